@@ -15,8 +15,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the path of an existing file in the folder of the missing file `named`: the file with the most
-/// similar name.
+/// Returns the path of the file whose name is most similar to `named`. It is searched for in the folder that
+/// should contain `named`.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;

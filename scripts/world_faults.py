@@ -37,7 +37,7 @@ FAULTS = (
      "if (input.request.id < halted_by_ || ", "if ("),
     ("a fault is acknowledged while its cause is present", "control/tick/supervisor.cpp",
      "if (cause.code != FaultCode::none) {", "if (false) {"),
-    ("a fault holds the pressure although the fault must vent", "control/tick/supervisor.cpp",
+    ("the controller holds the pressure after a fault that requires venting", "control/tick/supervisor.cpp",
      "if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;", ""),
     ("outputs that another Modbus client wrote do not cause a fault", "daemon/loop/bus.cpp", "return FaultCode::outputs_overwritten;",
      "return FaultCode::none;"),

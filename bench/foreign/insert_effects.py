@@ -60,7 +60,7 @@ EFFECTS = {
              lambda t, y, low, s: noisy(np.minimum(y, low + 0.7 * s), s)),
     "gain": ("the stroke is 15 % smaller", ["ageing", "payload", "stress_softening", "thermal_gain"],
              lambda t, y, low, s: low + 0.85 * (y - low)),
-    "weight": ("a weight: the stroke is 10 % smaller, and all readings are 5 % of the stroke lower", ["payload", "ageing"],
+    "weight": ("a weight: the stroke is 10 % smaller, and all readings are too low by 5 % of the stroke", ["payload", "ageing"],
                lambda t, y, low, s: low - 0.05 * s + 0.9 * (y - low)),
     "drift": ("the zero offset of the sensor drifts by 20 % of the stroke during the run", ["sensor_drift"],
               lambda t, y, low, s: y + 0.2 * s * (np.asarray(t) - t[0]) / (t[-1] - t[0])),

@@ -1,5 +1,6 @@
 #pragma once
-// Models a clock of the sensor that is ahead of the clock of the command, so that readings seem to be early.
+// Models a sensor whose clock is behind the clock of the command. The time stamps of the readings are too
+// early, so a reading seems to precede the command that causes it.
 
 #include "model/block.h"
 

@@ -87,8 +87,8 @@ inline double drive_at_end(const Record& record, std::size_t i) {
   return record.held ? record.drive_kpa[i - 1] : record.drive_kpa[i];
 }
 
-/// Simulates a record and calls sink(i, displacement) for each sample. The displacement does not include the
-/// offset and the unsettled creep.
+/// Simulates a record and calls sink(i, displacement) for each sample. The displacement includes neither the
+/// offset nor the creep that is still in progress at the start of the record.
 template <class T, class Sink>
 void walk(const model::Model& model, std::span<const T> values, const Record& record,
           const T& peak_before_kpa, const StartState& state, Sink&& sink) {

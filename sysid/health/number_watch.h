@@ -31,8 +31,8 @@ class NumberWatch {
 
   struct Watched {
     ControlChart own, beside;
-    /// For each point in the own chart and in the difference chart, its index in the list of points of the
-    /// finger.
+    /// The charts `own` and `beside` contain some of the points of the finger. For each point of a chart: the
+    /// index of this point in the list of all points of the finger.
     std::vector<std::size_t> own_at{}, beside_at{};
     PeerFingers peers{};
     std::size_t epoch = 0;

@@ -85,7 +85,8 @@ class Converter {
     remarks_.account.leave_out(LeftOut::bad_line, table_.rows() - rows.size());
     if (rows.size() < table_.rows())
       remarks_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(table_.rows() - rows.size()) +
-                               " rows with a cell that is not a number");
+                               (table_.rows() - rows.size() == 1 ? " row" : " rows") +
+                               " with a cell that is not a number");
     const bool by_times = mapping_[Role::time].columns.size() > 1;
     if (table_.has_rows_of_signals && !by_times) leave_out_unused(rows);
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);

@@ -54,8 +54,10 @@ class RowReader {
     std::string lines;
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
       lines += (lines.empty() ? "" : ", ") + std::to_string(skipped_[i]);
+    const bool is_one = skipped_.size() == 1;
     table_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(skipped_.size()) +
-                           " lines with too few or too many cells, in lines " + lines +
+                           (is_one ? " line" : " lines") + " with too few or too many cells, in " +
+                           (is_one ? "line " : "lines ") + lines +
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 

@@ -34,8 +34,9 @@ struct LogSeries {
   std::vector<bool> held_out;  ///< true: no model was fitted to this reading; empty: all readings were fitted
 };
 
-/// Returns the series of a log without predictions. A reading counts as held out if it is in the log but not
-/// in the record. If `all_held_out` is true, all readings count as held out.
+/// Returns the input and the readings of a log as a series that contains no predictions. The record contains
+/// the readings that may be fitted. All other readings of the log count as held out. If `all_held_out` is
+/// true, all readings count as held out.
 [[nodiscard]] LogSeries series_of(const Log& log, const Record& record, bool all_held_out);
 
 /// Returns the series as CSV text with a header line.

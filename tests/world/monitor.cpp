@@ -313,7 +313,7 @@ void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds d
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)
     violate(now, "writes of another Modbus client are detected",
-            fmt::format("another client has written for {:.3f} s of undisturbed time",
+            fmt::format("another client has written for {:.3f} s, without the time of bus disturbances",
                         seconds(*foreign_unseen_)));
 }
 

@@ -299,7 +299,7 @@ class MotionWorld {
   bool spoke_since_trip_ = false;  // true: an exchange has begun since the watchdog trip, so the command can
                                    // detect the trip
   std::vector<double> written_;    // values of the last write of the command that has reached the board
-  unsigned overwritten_ = 0;       // number of writes of the command that replaced values of another client
+  unsigned overwritten_ = 0;  // number of writes by the command line that replaced values of another client
   std::uint64_t foreign_writes_ = 0;
   Nanoseconds again_at_ = 0;
 };

@@ -30,8 +30,8 @@ struct Demands {
                                      ///< or kPa]
   double least_electrical_span = 0;  ///< smallest difference between the electrical values of the two
                                      ///< positions [V or mA]
-  double most_noise_share = 0.02;    ///< largest noise, as a share of the difference between the electrical
-                                     ///< values of the two positions
+  double most_noise_share = 0.02;    ///< largest permitted noise, as a share of the difference between
+                                   ///< electrical values of the two positions
 };
 
 /// A straight line through the visits, fitted by least squares.

@@ -42,8 +42,8 @@ struct ConditionBin {
 struct ConditionEvidence {
   Condition condition;  ///< tested condition; the vector of its values is empty
   std::vector<ConditionBin> bins;
-  /// Share of the residual variance above the noise that the condition explains; >= 0. The share is computed
-  /// on held-out blocks.
+  /// Residual variance that the condition explains, as a share of the residual variance that exceeds the
+  /// noise; >= 0. The share is computed on held-out blocks.
   double share_percent = 0;
   /// Probability of differences between the bin means that are at least as large as the measured ones, if the
   /// error does not depend on the condition.

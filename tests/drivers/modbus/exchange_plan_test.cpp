@@ -107,7 +107,7 @@ TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads,
             (std::vector<ReadStep>{{3, 0, 2}, {4, 40, 1}}));
   EXPECT_FALSE(plan_exchange(map, test::two_fingers(false), 1).clients.has_value())
-      << "the number of clients belongs to another module";
+      << "the register with the number of clients is on another I/O module than the channels that are read";
 }
 
 TEST(ExchangePlan, WritesSplitWhereAnOutputIsNotWired) {
