@@ -1,7 +1,6 @@
 #pragma once
-// Defines the clocks. All times in the project come from CLOCK_BOOTTIME of the machine or from the virtual
-// clock of a test.
-// Reads the wall clock for messages and file names. No control function uses this clock.
+// Defines the clocks. All times of control, and all times in logs, come from CLOCK_BOOTTIME of the machine or
+// from the virtual clock of a test. The wall clock is read only for messages and file names.
 
 #include <algorithm>
 #include <string>

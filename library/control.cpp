@@ -59,8 +59,8 @@ control::PidSettings checked_pid(const PidSettings& pid) {
           pid.tracking_time_s};
 }
 
-void require_inverse(const Model& model, const control::FeedforwardSettings& settings,
-                     const control::LimitSettings& limits, double tick_s) {
+void require_usable(const Model& model, const control::FeedforwardSettings& settings,
+                    const control::LimitSettings& limits, double tick_s) {
   if (const auto accepted = control::check_feedforward(model.parts().value, settings, limits, tick_s);
       !accepted)
     throw Refused(accepted.error().with_advice());
@@ -187,7 +187,7 @@ Feedforward::Feedforward(const Model& model, const Limits& limits, double tick_s
   library::require_between("tick_s", tick_s, shortest_tick_s, longest_tick_s, "s");
   library::require_between("extra_latency_s", extra_latency_s, 0, 1, "s");
   const control::FeedforwardSettings feedforward{kind_of(kind), extra_latency_s};
-  require_inverse(model, feedforward, settings, tick_s);
+  require_usable(model, feedforward, settings, tick_s);
   parts_ = std::make_unique<Parts>(
       Parts{control::RunningModel(model.parts().value, tick_s, extra_latency_s, tick_s),
             control::Feedforward(model.parts().value, feedforward, settings, tick_s), tick_s});
@@ -238,7 +238,7 @@ Controller::Controller(const ControllerSettings& settings) {
   channel.limits = library::checked(settings.limits);
   channel.plausibility.max_age_s = settings.reading_max_age_s;
   channel.health.noise_mm = settings.sensor_noise;
-  require_inverse(settings.model, channel.feedforward, channel.limits, settings.tick_s);
+  require_usable(settings.model, channel.feedforward, channel.limits, settings.tick_s);
   parts_ = std::make_unique<Parts>(channel, settings.tick_s);
   start(control::resting_kpa(channel.limits));
 }

@@ -34,7 +34,8 @@ struct ChannelInput {
 
 /// Computes the commands of one channel. The settings must be in the ranges that their headers state. If
 /// check_feedforward() (control/feedforward/invertibility.h) refuses the model for the configured
-/// feedforward, the channel has no feedforward.
+/// feedforward, the channel has no feedforward. A caller must not operate a model whose settled displacement
+/// does not rise with the command, because its feedback would be unstable.
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);

@@ -4,9 +4,16 @@
 
 #include "base/numbers.h"
 #include "sysid/changes/next_steps.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
+
+bool has_unfamiliar_input(const ChangeDiagnosis& diagnosis) {
+  return std::any_of(diagnosis.readings.begin(), diagnosis.readings.end(), [](const JudgedChange& judged) {
+    return judged.input_factor > limits::unfamiliar_factor;
+  });
+}
 
 using result::decimals, result::Fields, result::list_of, result::number, result::shown, result::Table,
     result::Value;
@@ -157,6 +164,10 @@ std::string interval_text(const ChangeCause& cause) {
 }
 
 std::string change_sentence(const ChangeDiagnosis& diagnosis) {
+  if (diagnosis.verdict == ChangeVerdict::unchanged && has_unfamiliar_input(diagnosis))
+    return "No change is detectable, but the input of the later logs is unlike the inputs of the healthy "
+           "logs. "
+           "Therefore, a larger difference from the baseline model is permitted.";
   if (diagnosis.verdict == ChangeVerdict::unchanged)
     return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
            "from each other.";

@@ -1,6 +1,7 @@
 #include "sysid/changes/unfamiliar_input.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
@@ -31,16 +32,19 @@ Base with_model(Base base, const HealthyModel& model) {
 /// about the healthy units.
 Disagreement expected_disagreement(const Base& base, const HealthyModel& other) {
   const LaterReadings all(base, base.records, difference(base.left, other.left));
-  const double share = run_to_run_factor(base.units.runs()) /
-                       static_cast<double>(std::max<std::size_t>(1, base.units.count()));
   Disagreement expected;
+  double units = 0;
   for (std::size_t unit = 0; unit < base.units.count(); ++unit) {
     const LaterReadings own = all.only(base.units, unit);
     if (own.records().empty()) continue;
     const auto [mean_square, loss] = disagreement(own);
-    expected.mean_square += share * mean_square;
-    expected.loss += share * loss;
+    expected.mean_square += mean_square;
+    expected.loss += loss;
+    units += 1;
   }
+  const double factor = run_to_run_factor(base.units.runs()) / std::max(1.0, units);
+  expected.mean_square *= factor;
+  expected.loss *= factor;
   return expected;
 }
 
@@ -53,6 +57,7 @@ Disagreement added_disagreement(const Base& base, const std::vector<Record>& lat
     const Disagreement healthy = expected_disagreement(base, other);
     const Residuals differing = difference(own, residuals_of(with_model(base, other), later));
     const Disagreement now = disagreement(readings_of(base, later, differing));
+    if (!std::isfinite(now.mean_square) || !std::isfinite(now.loss)) continue;  // the alternative diverges
     most.mean_square = std::max(most.mean_square, now.mean_square - healthy.mean_square);
     most.loss = std::max(most.loss, now.loss - healthy.loss);
   }

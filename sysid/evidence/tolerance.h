@@ -34,7 +34,7 @@ class Tolerance {
   [[nodiscard]] double usual(std::string_view cause) const;
   /// Returns the error reduction per row above which a cause counts as a change. The threshold is
   /// run_to_run_factor() times the larger one of two values: the mean reduction by this cause, and the mean
-  /// reduction by all causes.
+  /// reduction by all causes. The increase `more` is added.
   [[nodiscard]] double of(std::string_view cause) const;
 
  private:

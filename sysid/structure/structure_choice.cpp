@@ -147,7 +147,8 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
 
 /// Adds linear modes to a structure, one after the other, while the held-out loss becomes significantly
 /// lower. Offers each extended structure.
-/// @param form  trial of the structure without modes. Its losses are those that the first mode must improve.
+/// @param form  trial of the structure without modes; only its structure and its parameters are used. A
+/// second mode is tried even if the first one alone does not lower the loss.
 void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoice& choice) {
   for (std::size_t modes = 1; modes <= most_modes; ++modes) {
     BaseStructure structure = form.structure;
@@ -164,9 +165,9 @@ void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoi
 /// structure are tried only if a fast test shows that linear dynamics are missing.
 void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOptions& options,
                         StructureChoice& choice) {
-  if (options.progress) options.progress("trying linear modes");
   const std::vector<StructureTrial>& trials = choice.trials;
   if (judge.is_noise(trials[choice.chosen])) return;
+  if (options.progress) options.progress("trying linear modes");
   StructureTrial still = trials[choice.chosen];
   if (still.structure.published)
     still = *std::find_if(trials.begin(), trials.end(),

@@ -298,7 +298,8 @@ double least_elastic_mm_per_kpa(const StructureGrid& grid) {
 }
 
 double longest_mode_s(const StructureGrid& grid) {
-  return longest_mode_in_units * grid.time_unit_s;
+  constexpr double longest_s = 1e6;  // limit of the block linear_modes
+  return std::min(longest_mode_in_units * grid.time_unit_s, longest_s);
 }
 
 NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sysid/identification/combinations.h"
+#include "sysid/limits/limits.h"
 #include "sysid/structure/bounded_answer.h"
 #include "sysid/structure/linear_modes.h"
 #include "sysid/structure/published_element.h"
@@ -83,10 +84,9 @@ StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const St
 }
 
 bool StructureJudge::is_noise(const StructureTrial& trial) const {
-  constexpr double most = 1.1;
   double noise_mm = std::numeric_limits<double>::infinity();
   for (const Record& record : records_) noise_mm = std::min(noise_mm, fast_noise_mm(record));
-  return trial.heldout_rmse_mm <= most * noise_mm;
+  return trial.heldout_rmse_mm <= (1 + limits::equal_error_share) * noise_mm;
 }
 
 bool StructureJudge::lacks_linear_dynamics(const StructureTrial& trial) const {

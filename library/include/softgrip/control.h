@@ -164,8 +164,9 @@ struct FeedforwardStep {
 /// Reference.
 class SOFTGRIP_API Feedforward {
  public:
-  /// Computes the inverse of a model. Throws InvalidArgument if an argument is invalid, and Refused if the
-  /// model has no inverse within the limits.
+  /// Computes the inverse of a model. Throws InvalidArgument if an argument is invalid. Throws Refused if
+  /// the model has no inverse within the limits, or if its settled displacement does not rise with the
+  /// command.
   /// @param model            model of the finger
   /// @param limits           limits of the command
   /// @param tick_s           period of step() [s], > 0
@@ -232,7 +233,7 @@ struct ControlOutput {
 class SOFTGRIP_API Controller {
  public:
   /// Creates a controller. Throws InvalidArgument if a setting is invalid, and Refused if the model has no
-  /// inverse for the feedforward.
+  /// inverse for the feedforward, or if its settled displacement does not rise with the command.
   explicit Controller(const ControllerSettings& settings);
   ~Controller();
   /// Moves the state of `other` into this object. After this call, `other` may only be destroyed or get a new

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sysid/changes/base_prediction.h"
 #include "sysid/changes/unfamiliar_input.h"
 #include "tests/sysid/changes/pressure_base.h"
 
@@ -80,6 +81,7 @@ TEST_F(ChangeJudge, AnErrorUnderAnUnfamiliarInputIsNoChange) {
   EXPECT_GT(diagnosis.readings.front().input_factor, 2);
   ASSERT_EQ(diagnosis.warnings.size(), 1U);
   EXPECT_NE(diagnosis.warnings.front().find("unlike the inputs of the healthy logs"), std::string::npos);
+  EXPECT_EQ(change_sentence(diagnosis).find("Unchanged:"), std::string::npos) << change_sentence(diagnosis);
 }
 
 /// The permitted error for an input like the healthy inputs does not depend on the alternatives to the model.
@@ -104,6 +106,26 @@ TEST_F(ChangeJudge, ModelsDisagreeMoreOnlyUnderAnUnfamiliarInput) {
   make_wrong_for_steps();
   EXPECT_GT(added_disagreement(base_, steps).loss, 1);
   EXPECT_LT(added_disagreement(base_, ramps).loss, 1e-3);
+}
+
+/// A disagreement that also occurs about the healthy logs is no sign of an unfamiliar input.
+TEST_F(ChangeJudge, ADisagreementAboutHealthyLogsIsSubtracted) {
+  Base other = base_;
+  other.filter_weights(2) += 0.5;  // two lags of the command: the predictions of ramps differ
+  other.filter_weights(4) -= 0.5;
+  const auto own = residuals_of(base_, base_.records), others = residuals_of(other, base_.records);
+  for (std::size_t r = 0; r < own.size(); ++r) {
+    std::vector<double> difference = others[r];
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= own[r][i];
+    const std::vector<double> bins = binned(base_.records[r], difference, base_.bin_s);
+    for (std::size_t b = 0; b < bins.size(); ++b) other.left[r][b] += bins[b];
+  }
+  const std::vector<Record> ramps = pressure_records(test::logs_of({}, 5, true), false);
+  base_.alternatives = {other};
+  EXPECT_EQ(added_disagreement(base_, ramps).loss, 0);
+  other.left = base_.left;  // the models agree about the healthy logs
+  base_.alternatives = {other};
+  EXPECT_GT(added_disagreement(base_, ramps).loss, 0);
 }
 
 }  // namespace
