@@ -148,12 +148,12 @@ void print_speed(double rate_hz) {
     bytes = std::filesystem::file_size(folder + "/run.csv");
     std::filesystem::remove_all(folder);
   }
-  std::printf("%4.0f Hz  virtual time, %lu MB recorded in each run, %d runs\n", rate_hz,
+  std::printf("%4.0f Hz  simulation in virtual time; each run records a file of %lu MB; %d runs\n", rate_hz,
               static_cast<unsigned long>(bytes >> 20), runs);
   for (auto [name, factors] : {std::pair{"clock", by_clock}, std::pair{"processor time", by_processor}}) {
     std::sort(factors.begin(), factors.end());
-    std::printf("         by %-14s %5.0f times real time (%.0f to %.0f)\n", name, factors[runs / 2],
-                factors.front(), factors.back());
+    std::printf("         by %-14s %5.0f times faster than real time (median; range %.0f to %.0f)\n", name,
+                factors[runs / 2], factors.front(), factors.back());
   }
 }
 

@@ -20,8 +20,8 @@ struct ParameterSpec {
   double upper = 0;          ///< largest permitted value, inclusive
   double scale = 1;          ///< size of a typical change, by which a fit scales the parameter
   bool whole = false;        ///< true: only integers are permitted (an exponent)
-  bool placed = false;       ///< true: the parameter stays fixed while a fit changes the values that depend
-                             ///< on it (a threshold)
+  bool placed = false;       ///< true: a fit keeps the value of this parameter, for example of a threshold.
+                             ///< Exception: the parameter is listed in IdentifyOptions::free
   bool latency = false;      ///< true: a dead time, a lag or a period, whose size depends on the kind of rig;
                              ///< `upper` is the limit in files, and a fit uses a smaller upper limit that
                              ///< depends on the logs

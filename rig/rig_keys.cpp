@@ -83,16 +83,20 @@ void declare_channel(RigKeys& keys) {
   keys.rest_pressure = {optional(
       "rest_kpa", &Limits::rest_kpa, any_pressure_kpa,
       "[pressure of every safe state](#rest_kpa), between `pressure_min_kpa` and `pressure_max_kpa`")};
-  keys.limits = {
-      required("pressure_min_kpa", &Limits::pressure_min_kpa, any_pressure_kpa, "smallest command"),
-      required("pressure_max_kpa", &Limits::pressure_max_kpa, any_pressure_kpa, "largest command"),
-      required("slew_up_kpa_per_s", &Limits::slew_up_kpa_per_s, {0.001, 1e6}, "fastest increase"),
-      required("slew_down_kpa_per_s", &Limits::slew_down_kpa_per_s, {0.001, 1e6}, "fastest decrease"),
-      required("displacement_min_mm", &Limits::displacement_min_mm, any_displacement_mm, "least reference"),
-      required("displacement_max_mm", &Limits::displacement_max_mm, any_displacement_mm,
-               "greatest reference"),
-      required("displacement_margin_mm", &Limits::displacement_margin_mm, {0, 1000},
-               "distance beyond the displacement limits at which a reading causes a fault")};
+  keys.limits = {required("pressure_min_kpa", &Limits::pressure_min_kpa, any_pressure_kpa,
+                          "smallest permitted pressure command"),
+                 required("pressure_max_kpa", &Limits::pressure_max_kpa, any_pressure_kpa,
+                          "largest permitted pressure command"),
+                 required("slew_up_kpa_per_s", &Limits::slew_up_kpa_per_s, {0.001, 1e6},
+                          "largest rate at which the pressure command may increase"),
+                 required("slew_down_kpa_per_s", &Limits::slew_down_kpa_per_s, {0.001, 1e6},
+                          "largest rate at which the pressure command may decrease"),
+                 required("displacement_min_mm", &Limits::displacement_min_mm, any_displacement_mm,
+                          "smallest permitted reference of the displacement"),
+                 required("displacement_max_mm", &Limits::displacement_max_mm, any_displacement_mm,
+                          "largest permitted reference of the displacement"),
+                 required("displacement_margin_mm", &Limits::displacement_margin_mm, {0, 1000},
+                          "distance beyond the displacement limits at which a reading causes a fault")};
   using Pid = control::PidSettings;
   keys.pid = {required("kp_kpa_per_mm", &Pid::kp_kpa_per_mm, {0, 1e6}, "proportional gain"),
               required("ki_kpa_per_mm_s", &Pid::ki_kpa_per_mm_s, {0, 1e6}, "integral gain"),
@@ -110,7 +114,7 @@ void declare_channel(RigKeys& keys) {
 void declare_wiring(RigKeys& keys) {
   keys.output = {
       {"output", "0 to 255", "", "number of the output terminal; a terminal may be used only once"},
-      {"module", "a name", "the only module with outputs", "module with the terminal"},
+      {"module", "a name", "the only module with outputs", "name of the module that has the terminal"},
       {"at_v", "two numbers", "",
        "two signals at the terminal; write `at_ma` or `at_kpa` if the unit of the terminal is mA or kPa"},
       {"is_kpa", "two numbers", "",
@@ -118,7 +122,7 @@ void declare_wiring(RigKeys& keys) {
       {"range_kpa", "two numbers", "", "lowest and highest pressure that the valve controls"}};
   keys.input = {
       {"input", "0 to 255", "", "number of the input terminal; a terminal may be used only once"},
-      {"module", "a name", "the only module with inputs", "module with the terminal"},
+      {"module", "a name", "the only module with inputs", "name of the module that has the terminal"},
       {"at_v", "two numbers", "",
        "two signals at the terminal; write `at_ma` or `at_kpa` if the unit of the terminal is mA or kPa"},
       {"is_mm", "two numbers", "",
@@ -127,10 +131,10 @@ void declare_wiring(RigKeys& keys) {
        "lowest and highest signal of a valid reading; `valid_ma` or `valid_kpa` if the terminal is in mA or "
        "kPa"},
       {"error_codes", "list", "none", "signals with which the sensor reports that it cannot measure"}};
-  keys.valve = {
-      required("on_power_loss", &ValveFacts::on_power_loss, {"vents", "holds"}, "behaviour without power"),
-      optional("on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
-               "pressure to which a valve with `on_power_loss: vents` goes without power")};
+  keys.valve = {required("on_power_loss", &ValveFacts::on_power_loss, {"vents", "holds"},
+                         "behaviour of the valve without electrical power"),
+                optional("on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
+                         "pressure to which a valve with `on_power_loss: vents` goes without power")};
 }
 
 /// Reads `overrun_cycles`, whose deprecated name is `slipped_cycles`.
@@ -196,15 +200,16 @@ void declare_monitoring(RigKeys& keys) {
       required("max_speed_mm_per_s", &Check::max_speed_mm_per_s, {0.001, 1e6},
                "largest plausible speed of a finger; a reading that changes faster is a jump"),
       required("jump_margin_mm", &Check::jump_margin_mm, {0, 1000},
-               "change of a reading that is always permitted, because of noise"),
+               "change of a reading that never counts as a jump, because noise can cause it"),
       required("frozen_after_s", &Check::frozen_after_s, {0.001, 3600},
-               "time after which a constant reading is frozen if the command has changed"),
+               "time for which a reading must be constant, while the command changes, to count as frozen"),
       required("frozen_band_mm", &Check::frozen_band_mm, {0, 1000},
                "largest change of a reading that counts as constant"),
       required("frozen_command_kpa", &Check::frozen_command_kpa, {0.001, 10'000},
                "smallest change of the command at which a constant reading counts as frozen"),
-      optional("jump_mm", &Check::jump_mm, {0.001, 1000},
-               "smallest jump of a reading: the change of the reading minus the change of the model"),
+      optional(
+          "jump_mm", &Check::jump_mm, {0.001, 1000},
+          "smallest jump of a reading; the jump is the change of the reading minus the change of the model"),
       optional("unsteady_jumps", &Check::unsteady_jumps, {2, control::most_unsteady_jumps},
                "number of jumps back and forth within 1 s at which the sensor counts as unsteady")};
   using Health = control::ModelHealthSettings;
@@ -301,7 +306,8 @@ void declare_modbus(RigKeys& keys) {
                "time limit for opening a session"),
       required("first_pause_s", &ReconnectSettings::first_pause, {1e-3, 60},
                "first pause between two connection attempts; the pause doubles after each attempt"),
-      required("longest_pause_s", &ReconnectSettings::longest_pause, {1e-3, 600}, "longest pause")};
+      required("longest_pause_s", &ReconnectSettings::longest_pause, {1e-3, 600},
+               "longest pause between two connection attempts")};
   keys.budget = {optional("accept_over_budget", &RigFile::accept_over_budget, {},
                           "`true`: accept a `rate_hz` that exceeds the bus budget")};
   keys.module = {{"map", "a path", "", "[board map](board-map.md)"},
@@ -324,18 +330,19 @@ void declare_modbus(RigKeys& keys) {
                            "`rtu`: the board is connected to a serial server that forwards RTU frames")};
   keys.rtu_framing = {optional("silence_s", &TcpAddress::silence_s, {0, 1},
                                "only with `framing: rtu`: silence between a response and the next request")};
-  keys.numbering = {
-      {"accept_no_transaction_id", "a text", "none",
-       "needed for gateways that do not return the transaction id; the text states the accepted risk"}};
+  keys.numbering = {{"accept_no_transaction_id", "a text", "none",
+                     "needed for a gateway that does not return the transaction id; the value is a sentence "
+                     "that states the accepted risk"}};
   using drivers::SerialLine;
   keys.serial = {
       required("device", &SerialLine::device, {}, "path of the device, such as `/dev/serial/by-id/...`"),
-      required("baud", &SerialLine::baud, {1200, 1'000'000}, "one of the usual rates"),
+      required("baud", &SerialLine::baud, {1200, 1'000'000}, "baud rate; one of the usual rates"),
       {"format", "a text", "", "data bits, parity and stop bits: `8N1`, `8E1`, `8O1`, `8N2` or `8E2`"},
       optional("silence_s", &SerialLine::silence_s, {1e-5, 1}, "silence between frames", "3.5 characters"),
-      required("turnaround_s", &SerialLine::turnaround_s, {0, 1}, "response time of a module"),
+      required("turnaround_s", &SerialLine::turnaround_s, {0, 1},
+               "response time of a module, without the silence between the frames"),
       optional("adapter_latency_s", &SerialLine::adapter_latency_s, {0, 1},
-               "time by which the adapter delays a response", "value of the kernel"),
+               "time by which the serial adapter delays a response", "latency that Linux reports"),
       optional("echo", &SerialLine::echo, {},
                "`true`: the adapter also receives the frames that it has sent")};
 }
@@ -369,14 +376,16 @@ void declare_converters(RigKeys& keys) {
       {"plants", "map", "", "map with one plant per channel; each key is the name of a channel"},
       {"events", "list", "none", "timed events"}};
   using Plant = simulation::PlantSettings;
-  keys.plant = {
-      {"model", "a path", "", "model file of the simulated finger"},
-      required("displacement_noise_mm", &Plant::displacement_noise_mm, {0, 100}, "standard deviation"),
-      required("pressure_noise_kpa", &Plant::pressure_noise_kpa, {0, 100}, "standard deviation"),
-      optional("temperature_c", &Plant::temperature_c, {-50, 150}, "ambient temperature"),
-      optional("temperature_noise_c", &Plant::temperature_noise_c, {0, 100}, "standard deviation"),
-      {"object", "map", "none",
-       "object in the path of the finger at the start; a map with `position_mm` and `yielding`"}};
+  keys.plant = {{"model", "a path", "", "model file of the simulated finger"},
+                required("displacement_noise_mm", &Plant::displacement_noise_mm, {0, 100},
+                         "standard deviation of the noise of the displacement readings"),
+                required("pressure_noise_kpa", &Plant::pressure_noise_kpa, {0, 100},
+                         "standard deviation of the noise of the pressure readings"),
+                optional("temperature_c", &Plant::temperature_c, {-50, 150}, "ambient temperature"),
+                optional("temperature_noise_c", &Plant::temperature_noise_c, {0, 100},
+                         "standard deviation of the noise of the temperature readings"),
+                {"object", "map", "none",
+                 "object in the path of the finger at the start; a map with `position_mm` and `yielding`"}};
 }
 
 }  // namespace

@@ -214,7 +214,7 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these logs and a model of the finger without the effect. The parameters of the model without the effect have errors of a few per cent. The strength of an effect is the RMS of the displacement change that a refit of the model cannot absorb, divided by the sensor noise (0.04 mm).",
+             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these logs and a model of the finger without the effect. The parameters of this model deviate from the parameters of the simulated finger by a few per cent. The strength of an effect is computed from the displacement change that the effect causes. The part of this change that a refit of the model parameters can explain is removed. The strength is the RMS of the remaining change, divided by the sensor noise (0.04 mm).",
              "", variation, "", "| measure | target | measured (95 % interval) | cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
@@ -223,6 +223,7 @@ def write(path, results, planned, command, variation, version):
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
               f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause is counted as found if it is named alone or is listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
-              "Right: only the true cause is named. In a case without an effect, right means that no cause is named and no error remains unexplained. For an effect outside the library, right "
-              "means the verdict `unexplained`. Missed: no cause is named although there is an effect. Wrong: a cause that is not present is named, alone or together with the true cause."]
+              "Columns of the table: a result is *right* if only the true cause is named. In a case without an effect, a result is right if no cause is named and no error remains unexplained. "
+              "For an effect outside the library, a result is right if the verdict is `unexplained`. A result is *missed* if no cause is named although the finger has an effect. A result is *wrong* "
+              "if a cause that is not present is named, alone or together with the true cause."]
     path.write_text("\n".join(lines) + "\n")

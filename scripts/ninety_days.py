@@ -194,6 +194,15 @@ def judged_event(softgrip, folder, view, event):
             "right": bool(set(event.causes) & set(suspects))}
 
 
+UNITS = {"_mm": "mm", "_s": "s", "_kpa": "kPa", "_kpa_per_s": "kPa/s"}
+
+
+def change_of(found):
+    """Returns the name of a changed indicator and the change with its unit."""
+    ending = max((end for end in UNITS if found["number"].endswith(end)), key=len)
+    return f"{found['number']} changed by {found['change']:+.3g} {UNITS[ending]}"
+
+
 def false_alarms(said, eventful):
     """Returns the alarms that no event explains, each with its day."""
     found = []
@@ -202,13 +211,13 @@ def false_alarms(said, eventful):
             day = day_of(alarm["noticed"])
             if not any(event.finger in (finger["finger"], BOTH) and event.day <= day < event.mended
                        for event in EVENTS if eventful):
-                found.append(f"{finger['finger']} {alarm['number']} on day {day}, {alarm['change']:+.3g}")
+                found.append(f"{finger['finger']} {change_of(alarm)}, alarm on day {day}")
     return found
 
 
 def warnings(said):
     """Returns the warnings about the rig, which do not count as alarms."""
-    told = [f"shared {one['number']} on day {day_of(one['noticed'])}, {one['change']:+.3g}" for one in said["shared_changes"]]
+    told = [f"shared {change_of(one)}, warning on day {day_of(one['noticed'])}" for one in said["shared_changes"]]
     for finger in said["fingers"]:
         told += [f"unclear {finger['finger']} {one['number']} on day {day_of(one['noticed'])}" for one in finger["unclear"]]
         told += [f"unclear {finger['finger']} {one['number']} from day {day_of(one['warned'])} to the alarm on day "
@@ -263,9 +272,9 @@ def page(args, seen, eventful, healthy, wall_s):
         f"| {NAMES[temperature]} | {fingers_in(healthy, temperature, 'false')} of {2 * args.healthy} | "
         f"{fingers_in(healthy, temperature, 'alone')} of {2 * args.healthy} | "
         f"{sum(bool(told[temperature]['warnings']) for told in healthy)} of {args.healthy} |\n" for temperature in TOGETHER)
-    lists = "".join(f"Alarms of both fingers together, {NAMES[t]}:\n\n{listed(healthy, t, 'false')}\n"
-                    f"Warnings of a change of the rig, {NAMES[t]}:\n\n{listed(healthy, t, 'warnings')}\n"
-                    f"Alarms of a finger judged alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
+    lists = "".join(f"Alarms, both fingers judged together, {NAMES[t]}:\n\n{listed(healthy, t, 'false')}\n"
+                    f"Warnings that the rig has changed, {NAMES[t]}:\n\n{listed(healthy, t, 'warnings')}\n"
+                    f"Alarms, each finger judged alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
     told = "".join(f"### {NAMES[t].capitalize()}\n\n| change | finger | on day | warned on day | "
                    f"alarm on day | after grips | indicators in "
                    f"alarm before the repair | candidate faults in the night of the alarm | candidate faults before the repair |\n"

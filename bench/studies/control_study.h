@@ -46,8 +46,8 @@ struct ControlFigure {
   double amplitude_mm = 0;  ///< amplitude of the reference: the largest amplitude that bench_twin can track
                             ///< at this frequency, but not more than the amplitude of the study
   control::PidSettings pid;
-  double sensitivity = 0;  ///< largest sensitivity Ms of the loop over the simulated fingers with which the
-                           ///< gains were searched
+  double sensitivity = 0;  ///< largest sensitivity Ms = max |1/(1+L)| of the control loop. The largest value
+                           ///< is taken over the simulated fingers that the gain search used
   std::string limited_by;
   Spread rmse_mm;
   Spread most_mm;                ///< largest absolute error of each simulated finger

@@ -155,9 +155,11 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
            (std::isfinite(study.back_at_kpa)
                 ? " and returns to its initial value only at " + fixed(study.back_at_kpa, 1) + " kPa."
                 : " and does not return to its initial value below 60 kPa."),
-       "Explicit form: errors grow by beta/alpha from sample to sample until the bounded hysteresis state "
-       "stops this growth. The result is an oscillation of tens of kPa.",
-       "Implicit form: up to beta = alpha, this form returns the pressure to rounding. Above this limit, "
+       "Explicit form: if beta/alpha exceeds 1, each sample multiplies the error of the pressure by "
+       "beta/alpha until the bounded hysteresis state stops this growth. The computed pressure then "
+       "oscillates by tens of kPa.",
+       "Implicit form: up to beta = alpha, this form returns the pressure except for rounding errors. Above "
+       "this limit, "
        "several pressures or no pressure fit the displacement. The implicit form then selects one pressure, "
        "jumps, or stays at a bound of 0 to 60 kPa and reports this.",
        "Controller: before a start, the controller checks the model. Result for bouc_wen of the published "

@@ -64,12 +64,15 @@ class BoucWenFeedforward {
 /// at the actuator to a plan. With this pressure, the chain after the valve reaches the reference at the time
 /// "now + one tick + all dead times". ValveInverse computes the command from the plan.
 ///
-/// The lead differentiates the plan, which contains no sensor noise. The command stays inside the pressure
-/// range and the slew limits. The plan is computed from the limited command, so the plan does not wind up. If
-/// the reference is out of reach, the plan goes as far as the limits allow, and step() reports this. The plan
-/// then continues from the pressure that it has reached. Behind a lag, a command at the slew limit cannot
-/// stop the pressure at once. Therefore, the plan limits its approach speed such that it can brake with the
-/// constant deceleration slew/tau. As a result, a jump of the reference causes no ringing.
+/// Noise: the lead differentiates the planned pressure, which contains no sensor noise.
+///
+/// Limits: the command stays inside the pressure range and the slew limits. The plan is computed from the
+/// limited command, so the plan does not wind up. If the limits prevent the finger from reaching the
+/// reference, step() reports this. The next tick continues the plan from the pressure that was reached.
+///
+/// Braking: after a lag with the time constant tau, the pressure cannot stop at once, because the slew rate
+/// of the command is limited. The plan therefore approaches the reference only so fast that the constant
+/// deceleration slew/tau can stop the pressure. As a result, a jump of the reference causes no ringing.
 class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,

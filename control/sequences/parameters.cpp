@@ -176,7 +176,7 @@ std::string assignment(const Parameter& parameter) {
 std::string which_end(const Parameter& parameter) {
   if (parameter.value == parameter.lower) return ", the lower end of its range,";
   if (parameter.value == parameter.upper) return ", the upper end of its range,";
-  return "";
+  return ",";
 }
 
 void tell_at_parameter(const document::Document& document, const Parameter& parameter, const Problems& found,

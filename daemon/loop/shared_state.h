@@ -38,10 +38,12 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// Bound of the outputs [kPa]: no output is nearer to rest than this. The bound is the last written value.
-  /// If the board has not confirmed the last write, the bound is the one of the last two written values that
-  /// is nearer to rest. If these values are on different sides of rest, or if the board's watchdog has acted,
-  /// the bound is the rest pressure. Before the first write, the bound is infinite.
+  /// Assumed pressure of each output [kPa]. A command that may not move the output away from rest must lie
+  /// between the rest pressure and this pressure. After a confirmed write, this is the written pressure.
+  /// After an unconfirmed write, this is the one of the last two written pressures that is nearer to rest. If
+  /// these two pressures are on different sides of rest, or if the board's watchdog has acted, this is the
+  /// rest pressure. Infinity, before the first write: the output is not known, so it does not limit the
+  /// command.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };

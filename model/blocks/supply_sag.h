@@ -21,7 +21,9 @@ class SupplySag {
       parameter("coupling", "",
                 "relative decrease of the pressure per relative decrease of the supply pressure",
                 Typical{0.2}, Within{0.0, 1.0}, Scale{0.1}, Neutral{0.0}),
-      parameter("nominal_kpa", "kPa", "nominal supply pressure, at which the pressure is not reduced",
+      parameter("nominal_kpa", "kPa",
+                "nominal supply pressure; at this and at every higher supply pressure, the block does not "
+                "reduce the pressure",
                 Typical{500.0}, Within{1.0, 10000.0}, Scale{50.0})};
 
   SupplySag(std::span<const T> values, const Preparation&) : coupling_(values[0]), nominal_kpa_(values[1]) {}

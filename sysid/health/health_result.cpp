@@ -10,7 +10,9 @@ namespace {
 
 using result::Fields, result::list_of, result::number, result::shown, result::Value;
 
-/// Returns the indicators that have changed at all fingers, and the indicators with an active shared change.
+/// Returns the ids of two groups of indicators. The indicators of the first group have an active alarm in the
+/// same direction at every finger. For the indicators of the second group, `rig` contains an active change
+/// that several fingers share.
 std::vector<std::string> shared_numbers(const RecordedHealth& rig) {
   std::vector<const FingerHealth*> all;
   for (const JudgedFinger& finger : rig.fingers) all.push_back(&finger.health);

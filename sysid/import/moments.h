@@ -21,7 +21,9 @@ struct Moment {
   bool dated = false;  ///< true: the text has a date; false: the text has a time of day only
   /// True: the text has two fields ("12:34"), which were read as minutes and seconds.
   bool short_clock = false;
-  bool surely_minutes = false;  ///< true: the text has two fields that cannot be hours and minutes
+  /// True: the text has two fields, which cannot be hours and minutes, because the first field exceeds 23 or
+  /// the text has a fraction.
+  bool surely_minutes = false;
 };
 
 /// Parses a date with a time of day, or a time of day. Accepted are ISO 8601 (2024-05-31T12:00:00.25+02:00,

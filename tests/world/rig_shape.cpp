@@ -79,11 +79,13 @@ void draw_habits(RigShape& shape, bool always) {
   habits.spoils_every = static_cast<unsigned>(one_of(0, 60, 500));
   habits.reads_apart = one_of(false, true);
   shape.text += fmt::format(
-      ", deaf {} s, settle_s {:.2f}, repeat_after_s {:.3f}, {} channels a request, closes every {}. session, "
-      "loses every {}. response, spoils every {}.{}",
+      ", the board ignores requests for {} s after a connection, settle_s {:.2f}, repeat_after_s {:.3f}, {} "
+      "channels per request (0: all), the board closes every Nth connection (N = {}), every Nth response is "
+      "lost "
+      "(N = {}), stray bytes arrive before every Nth response (N = {}; N = 0: never){}",
       deaf_s, seconds(habits.settle), seconds(habits.repeat_after), habits.channels_at_once,
       habits.closes_every, habits.loses_every, habits.spoils_every,
-      habits.reads_apart ? ", reads apart" : "");
+      habits.reads_apart ? ", separate requests to write and to read" : "");
 }
 
 }  // namespace softgrip::world

@@ -269,8 +269,9 @@ class Generator {
                "_state *s = chain;\n  " + step + ";\n}\n";
     }
     text_ += model::in_unit(
-                 "\n/* Sets the state to rest at command_kpa, as after one increase of the command from 0. "
-                 "Returns the displacement [mm]. */\ndouble ",
+                 "\n/* Sets the steady state at the constant command command_kpa, which is reached after one "
+                 "increase "
+                 "of the command from 0 to command_kpa. Returns the displacement [mm]. */\ndouble ",
                  model_.output_unit) +
              name_ + "_reset(" + name_ +
              "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"

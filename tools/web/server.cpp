@@ -148,8 +148,8 @@ void Server::look_after(Visitor& visitor, net::PollSet::Events events, Nanosecon
       if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
     }
   }
-  // A client that has closed its sending side may not receive the outcome of its start, so the start is given
-  // up.
+  // A client that has closed its sending side has possibly disconnected and cannot receive the outcome of its
+  // start request. The server therefore abandons this start request.
   if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
   if (client.phase() == Phase::loading && !visitor.leaves) take_piece(visitor);

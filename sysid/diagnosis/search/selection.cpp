@@ -249,7 +249,8 @@ class Selector {
   Selection result_;
   /// result of options_.to_beat_mm2(); not set: the function was not called
   std::optional<double> to_beat_mm2_;
-  /// The structure without one of its causes. Fit and held-out losses are computed when they are needed.
+  /// Results for the structure without one of its causes: the fit, and the losses on held-out blocks. Each
+  /// result is computed at the first call that needs it.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
@@ -257,7 +258,7 @@ class Selector {
   /// Candidates that were tested in place of a cause. Key: index of the cause. Results that are no longer
   /// valid are removed.
   std::map<std::size_t, std::vector<Scored>> fresh_;
-  /// The structure without one of its causes. Key: index of the cause.
+  /// Results for the structure without one of its causes. Key: index of the removed cause.
   std::map<std::size_t, Without> without_;
 };
 

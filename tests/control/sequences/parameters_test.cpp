@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
               with("rounds: {unit: none, default: 2, range: [1, 5], about: x}",
                    "pressure: {signal: tp1, cycles: $rounds}"),
               {{"rounds", 2.5}},
-              "seq.yaml:3:3: with `rounds` = 2.5 line 5 is wrong: `cycles` must be a whole number, found "
+              "seq.yaml:3:3: with `rounds` = 2.5, line 5 is wrong: `cycles` must be a whole number, found "
               "`2.5` (`$rounds`)"},
         Wrong{"an_end_that_no_rig_has",
               with("rounds: {unit: none, default: 2, range: [0, 5], about: x}",
@@ -185,7 +185,7 @@ document::Problem wrong(const std::string& message) {
 TEST(Blame, FallsOnTheParameterWhoseValueAloneIsEnough) {
   const Judge judge = [](const std::vector<Parameter>& values) {
     document::Problems found;
-    if (values[1].value > 7) found.add(wrong("too long"));
+    if (values[1].value > 7) found.add(wrong("the sequence is too long"));
     return found;
   };
   std::vector<Parameter> values = two_parameters();
@@ -195,13 +195,13 @@ TEST(Blame, FallsOnTheParameterWhoseValueAloneIsEnough) {
   blame_values(three_lines(), values, judge, problems);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems.list()[0].at, (document::Location{2, 1}));
-  EXPECT_EQ(problems.list()[0].message, "with `b_s` = 8 line 3 is wrong: too long");
+  EXPECT_EQ(problems.list()[0].message, "with `b_s` = 8, line 3 is wrong: the sequence is too long");
 }
 
 TEST(Blame, StaysAtTheStepWhereItTakesSeveral) {
   const Judge judge = [](const std::vector<Parameter>& values) {
     document::Problems found;
-    if (values[0].value + values[1].value > 15) found.add(wrong("too long"));
+    if (values[0].value + values[1].value > 15) found.add(wrong("the sequence is too long"));
     return found;
   };
   std::vector<Parameter> values = two_parameters();
@@ -213,14 +213,14 @@ TEST(Blame, StaysAtTheStepWhereItTakesSeveral) {
   blame_values(three_lines(), values, judge, problems);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems.list()[0].at, (document::Location{3, 1}));
-  EXPECT_EQ(problems.list()[0].message, "with `a_s` = 9, `b_s` = 8: too long");
+  EXPECT_EQ(problems.list()[0].message, "with `a_s` = 9, `b_s` = 8: the sequence is too long");
 }
 
 TEST(Blame, TriesBothEndsOfEachRange) {
   const Judge judge = [](const std::vector<Parameter>& values) {
     document::Problems found;
     if (values[0].value < 1) found.add(wrong("too short"));
-    if (values[1].value > 9) found.add(wrong("too long"));
+    if (values[1].value > 9) found.add(wrong("the sequence is too long"));
     return found;
   };
   document::Problems problems;
@@ -229,7 +229,7 @@ TEST(Blame, TriesBothEndsOfEachRange) {
   EXPECT_EQ(problems.list()[0].message,
             "with `a_s` = 0, the lower end of its range, line 3 is wrong: too short");
   EXPECT_EQ(problems.list()[1].message,
-            "with `b_s` = 10, the upper end of its range, line 3 is wrong: too long");
+            "with `b_s` = 10, the upper end of its range, line 3 is wrong: the sequence is too long");
 }
 
 TEST(Blame, WhatIsWrongAnywayIsNoParametersFault) {

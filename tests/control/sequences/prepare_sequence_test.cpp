@@ -281,7 +281,7 @@ TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
   EXPECT_FALSE(prepare(*read({{"level_kpa", 65}}), settings, asked));
   ASSERT_EQ(asked.size(), 2U);
   EXPECT_EQ(asked.list()[0].at.line, 3);
-  EXPECT_NE(asked.list()[0].message.find("with `level_kpa` = 65 line 5 is wrong"), std::string::npos)
+  EXPECT_NE(asked.list()[0].message.find("with `level_kpa` = 65, line 5 is wrong"), std::string::npos)
       << asked.format();
 }
 

@@ -163,7 +163,7 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
   ASSERT_GE(thin.size(), 364U);
   EXPECT_EQ(thin.time_s[0], 0);
   EXPECT_EQ(thin.sample_time_s, 0) << "the first time step differs from the other time steps";
-  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "each sample represents the samples around it";
+  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "each kept sample replaces all samples within 0.011 s";
   for (std::size_t i = 1; i + 1 < thin.size(); ++i) {
     EXPECT_NEAR(thin.time_s[i], 0.011 * (static_cast<double>(i) - 0.5), 0.51e-3);
     EXPECT_NEAR(thin.duration_s[i], thin.time_s[i] - thin.time_s[i - 1], 1e-9);

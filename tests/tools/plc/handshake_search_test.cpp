@@ -335,8 +335,8 @@ struct World {
     for (Command& command : commands) command.over = command.over || command.executed;
     wires.clear();
     waiting.reset();
-    // The lines of the dead gateway reach the daemon before the lines of the new gateway. The responses of
-    // the daemon to the dead gateway are lost.
+    // The requests that the dead gateway has sent reach the daemon before the requests of the new gateway.
+    // The replies of the daemon to the dead gateway are lost.
     answers.clear();
     for (Plc& master : masters) master.heard = 0;
     watched = owed = stopped_since_beat = false;
