@@ -174,7 +174,8 @@ void declare_safety(RigKeys& keys) {
       required(
           "readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
           "largest permitted difference between the output and the commands of the last `readback_delay_s`"),
-      required("readback_delay_s", &Fault::readback_delay_s, {0, 10}, "see `readback_tolerance_kpa`"),
+      required("readback_delay_s", &Fault::readback_delay_s, {0, 10},
+               "period before each comparison; the output is compared with every command of this period"),
       optional("pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
                "number of cycles with a measured pressure that differs from the commands after which the "
                "fault occurs; 0: no comparison"),
@@ -182,12 +183,16 @@ void declare_safety(RigKeys& keys) {
                "largest permitted difference between the measured pressure and the commands of the last "
                "`pressure_delay_s`",
                "none"),
-      optional("pressure_delay_s", &Fault::pressure_delay_s, {0, 10}, "see `pressure_tolerance_kpa`", "none"),
+      optional("pressure_delay_s", &Fault::pressure_delay_s, {0, 10},
+               "period before each comparison; the measured pressure is compared with every command of this "
+               "period",
+               "none"),
       {{"overrun_cycles", "0 to 100000", "",
         "number of consecutive missed cycles of the control loop after which the fault occurs; 0: missed "
         "cycles never cause a fault"},
        read_overrun_cycles},
-      required("model_unfit_is_fault", &Fault::model_unfit_is_fault, {}, "`true`: an unfit model is a fault"),
+      required("model_unfit_is_fault", &Fault::model_unfit_is_fault, {},
+               "`true`: a model that does not fit the readings causes a fault"),
       optional("unsteady_is_fault", &Fault::unsteady_is_fault, {},
                "`true`: readings that jump back and forth cause the fault F204; `false`: such readings cause "
                "only an event")};
@@ -242,11 +247,13 @@ void declare_service(RigKeys& keys) {
        "processors on which the control loop and the bus thread run; `[]`: all processors"},
       optional("cpu_dma_latency_us", &RealTime::cpu_dma_latency_us, {0, 1'000'000},
                "longest permitted wake-up time of a processor from a sleep state"),
-      optional("prefault_stack_bytes", &RealTime::prefault_stack_bytes, {0, 4 << 20}, "prefaulted stack"),
-      optional("prefault_heap_bytes", &RealTime::prefault_heap_bytes, {0, 1 << 30}, "prefaulted heap")};
+      optional("prefault_stack_bytes", &RealTime::prefault_stack_bytes, {0, 4 << 20},
+               "size of the prefaulted stack"),
+      optional("prefault_heap_bytes", &RealTime::prefault_heap_bytes, {0, 1 << 30},
+               "size of the prefaulted heap")};
   using Recorder = RecorderSettings;
   keys.recorder = {
-      required("mode", &Recorder::mode, {"off", "sequences", "always"}, "when recordings are made"),
+      required("mode", &Recorder::mode, {"off", "sequences", "always"}, "periods that are recorded"),
       required("directory", &Recorder::directory, {}, "folder of the recordings"),
       optional("decimation", &Recorder::decimation, {1, 10'000}, "number of cycles per row of the recording"),
       optional("flush_interval_s", &Recorder::flush_interval_s, {0.001, 0.5},
@@ -292,8 +299,8 @@ void declare_gpio(RigKeys& keys) {
       optional("offset", &Line::offset, {0, 65535},
                "number of the line in the chip; may be given in place of `line`"),
       required("active", &Line::active_low, {"high", "low"}, "level at which the line is active")};
-  keys.gpio_input = {
-      optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"}, "inputs: pull resistor")};
+  keys.gpio_input = {optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"},
+                              "only for inputs: pull resistor of the line")};
   keys.gpio_enable = {required("on_fault", &GpioSettings::keeps_enable_on_fault, {"drop", "keep"},
                                "`enable`: behaviour during a fault other than F501 and F502")};
 }

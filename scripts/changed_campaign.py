@@ -138,7 +138,7 @@ def page(rows, command, planned, variation, version):
 
 def changing_text():
     return [
-        "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are simulated without a hidden cause. The later logs (campaign 1) have different",
+        "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs if the table states no other number) are simulated without a hidden cause. The later logs (campaign 1) have different",
         "waveforms and different noise, and contain one hidden cause or no cause. The excess error of a change is the RMS of the displacement change that a refit of the model cannot absorb. At strength 1, the excess error is 8 times the sensor noise of 0.04 mm. The pages of the other campaigns call this excess error strength 8. At strength 0.15, the excess error is 0.048 mm.",
         "The zero offset of the sensor and the temperature differ between the healthy and the later logs. The outcomes are: `first`: the true cause is named first.",
         "`twin`: stiffening is named although the sensor scale is nonlinear, or a nonlinear sensor scale is named although the finger stiffens. `listed`: the true cause is named after a wrong cause,",

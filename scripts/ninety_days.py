@@ -211,16 +211,16 @@ def false_alarms(said, eventful):
             day = day_of(alarm["noticed"])
             if not any(event.finger in (finger["finger"], BOTH) and event.day <= day < event.mended
                        for event in EVENTS if eventful):
-                found.append(f"{finger['finger']} {change_of(alarm)}, alarm on day {day}")
+                found.append(f"{finger['finger']} finger: {change_of(alarm)}, alarm on day {day}")
     return found
 
 
 def warnings(said):
     """Returns the warnings about the rig, which do not count as alarms."""
-    told = [f"shared {change_of(one)}, warning on day {day_of(one['noticed'])}" for one in said["shared_changes"]]
+    told = [f"shared: {change_of(one)}, warning on day {day_of(one['noticed'])}" for one in said["shared_changes"]]
     for finger in said["fingers"]:
-        told += [f"unclear {finger['finger']} {one['number']} on day {day_of(one['noticed'])}" for one in finger["unclear"]]
-        told += [f"unclear {finger['finger']} {one['number']} from day {day_of(one['warned'])} to the alarm on day "
+        told += [f"unclear: {one['number']} of the {finger['finger']} finger on day {day_of(one['noticed'])}" for one in finger["unclear"]]
+        told += [f"unclear: {one['number']} of the {finger['finger']} finger from day {day_of(one['warned'])} to the alarm on day "
                  f"{day_of(one['noticed'])}" for one in finger["alarms"] if one["warned"] < one["noticed"]]
     return told
 

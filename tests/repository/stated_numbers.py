@@ -58,8 +58,8 @@ def worlds():
                                     ("", "changed_worlds", CHANGED_WORLD)):
             file = f"{BLIND}{folder}{more}{name.removeprefix('fixed_') if more else name}.csv"
             counts[more] += len(re.findall(world, text(file), re.MULTILINE))
-    says = (f"{counts['']} cases with fixed seeds are part of `scripts/test.sh`, and {counts['more_']} more of "
-            "`scripts/test.sh --all`")
+    says = (f"{counts['']} cases with fixed seeds are part of `scripts/test.sh`, and {counts['more_']} "
+            "additional cases are part of `scripts/test.sh --all`")
     if says not in one_line("docs/reference/diagnosis-steps.md"):
         yield f"diagnosis-steps.md does not say: {says}"
 
