@@ -132,7 +132,7 @@ class BoardHabits(bench.BenchTest):
     def test_the_doctor_says_addresses_that_are_off_by_one(self):
         inputs = "function: 3\n  address: 0\n  count: 8"
         at = {n: self.board(f"at_{n}", (inputs, inputs.replace("0", str(n)))) for n in (1, 400, 401)}
-        self.assert_says(self.examined(at[1], self.board("plain")), "one register lower", "address_base: 1")
+        self.assert_says(self.examined(at[1], self.board("plain")), "One register lower", "address_base: 1")
         self.assert_says(self.examined(at[400], at[401]), "accepts the request if it begins one register higher, at 401", "by one")
 
     def test_the_doctor_says_the_other_read_function(self):
@@ -159,7 +159,7 @@ class BoardHabits(bench.BenchTest):
     def test_the_doctor_says_what_an_exception_means(self):
         plain = self.board("plain")
         self.assert_says(self.examined(plain, plain, "--unit", "3"), "(exception 11); unit id 3 responds", "unit: 3")
-        self.assert_says(self.examined(plain, plain, fault="few_registers, most: 8"), "(exception 3); a request of 8 registers is accepted",
+        self.assert_says(self.examined(plain, plain, fault="few_registers, most: 8"), "(exception 3); the board accepts a request of 8 registers",
                          "max_registers: 8")
         self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 1"), "(exception 1)", "with the manual")
         self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 4"), "(exception 4)", "internal failure")

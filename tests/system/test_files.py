@@ -27,7 +27,7 @@ class Overwriting(bench_files.Files):
             done = subprocess.run([program, *line.split()], cwd=self.folder, capture_output=True, text=True,
                                   timeout=bench.PATIENCE_S, stdin=subprocess.DEVNULL)
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("not overwritten", done.stderr)
+            self.assertIn("overwritten", done.stderr)
             self.assertEqual(path.read_bytes(), before)
 
     def test_a_histogram_file_has_the_counts_under_both_names(self):

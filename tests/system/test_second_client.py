@@ -60,7 +60,7 @@ class SecondClient(bench.BenchTest):
         reader = self.reader(emulator.port)
         told = daemon.wait_for_event("another_client")
         self.assertEqual(told["severity"], "warning")
-        self.assertIn("counts 2 clients", told["text"])
+        self.assertIn("has 2 clients", told["text"])
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
         daemon.kill()
@@ -79,7 +79,7 @@ class SecondClient(bench.BenchTest):
         self.reader(emulator.port)
         both = self.doctor(rig)
         self.assertEqual(both["clients"]["verdict"], "warn")
-        self.assertIn("counts 2 clients", both["clients"]["text"])
+        self.assertIn("has 2 clients", both["clients"]["text"])
 
     def test_a_watchdog_that_only_writes_feed_is_not_fed_by_a_reader(self):
         board = self.folder / "config/boards/adam-6024.yaml"

@@ -18,7 +18,7 @@ class Tune(bench.BenchTest):
         self.tune("--feedforward", "full_model", "--out", "pid.yaml")
         snippet = (self.folder / "pid.yaml").read_text()
         self.assertIn("# Limited by ", snippet)
-        self.assertIn("each model parameter varied by up to 5 %", snippet)
+        self.assertIn("each model parameter was varied by up to 5 %", snippet)
         keys = snippet[snippet.index("pid:\n"):].replace("\n", "\n  ")
         rig = (self.folder / "config/rig.yaml").read_text()
         rig, count = re.subn(r"pid:\n(    \w+: \S+\n)+", keys.rstrip() + "\n", rig)

@@ -38,7 +38,7 @@ TEST(EventLog, AnotherClientOfTheBoardIsAWarningWithTheirNumber) {
   const EventEntry entry = describe(event);
   EXPECT_EQ(entry.kind, "another_client");
   EXPECT_EQ(entry.severity, Severity::warning);
-  EXPECT_NE(entry.text.find("counts 2 clients"), std::string::npos) << entry.text;
+  EXPECT_NE(entry.text.find("has 2 clients"), std::string::npos) << entry.text;
 }
 
 TEST(EventLog, WhyNoSessionCanBeOpenedIsAnEventOfItsOwn) {

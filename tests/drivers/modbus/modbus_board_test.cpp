@@ -259,7 +259,7 @@ TEST_F(ModbusBoardTest, ConnectingWritesNoOutput) {
   EXPECT_EQ(server_.take_requests(), expected);
   const Board::Budget budget = board_->budget();
   EXPECT_NE(budget.explanation.find("4 round trips"), std::string::npos) << budget.explanation;
-  EXPECT_NE(budget.explanation.find("median of 3 measured"), std::string::npos) << budget.explanation;
+  EXPECT_NE(budget.explanation.find("median of 3 round trips"), std::string::npos) << budget.explanation;
   EXPECT_GT(budget.exchange_s, 0);
 }
 

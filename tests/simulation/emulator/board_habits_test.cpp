@@ -91,7 +91,7 @@ TEST(BoardHabits, TheSettleTimeIsPartOfTheDeadlineForConnecting) {
   const Nanoseconds before = clock.now();
   EXPECT_EQ(board.connect(200ms), BusStatus::timed_out);
   EXPECT_LT(clock.now() - before, 10'000'000'000);
-  EXPECT_NE(std::string(board.detail()).find("settled"), std::string::npos) << board.detail();
+  EXPECT_NE(std::string(board.detail()).find("settle_s"), std::string::npos) << board.detail();
 }
 
 /// If a request is lost, the driver repeats the request within the deadline of the exchange and keeps the

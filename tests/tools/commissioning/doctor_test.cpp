@@ -477,7 +477,7 @@ TEST(ExamineDaemon, OneUnpluggedCableIsOneFailure) {
   EXPECT_EQ(findings.count(Verdict::fail), 1U);
   const std::string text = text_of({"bench", "rig.yaml", true}, findings, 200, false);
   EXPECT_NE(text.find("FAIL board"), std::string::npos) << text;
-  EXPECT_NE(text.find("tried 7 times, every 2 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("not connected after 7 attempts, one every 2 s"), std::string::npos) << text;
   EXPECT_NE(text.find("F101 bus_down is latched, see `board`"), std::string::npos) << text;
 }
 
