@@ -26,9 +26,33 @@ static void mode_decay(double w, double d, double t, double *cosine, double *sin
   }
 }
 
+/* Power series in t / dt for a segment that is much shorter than the time constants. Returns the mean. */
+static double mode_advance_by_series(mode *m, double w, double d, segment in) {
+  const double bend = bend_of(in), angle = w * in.duration_s;
+  double now = m->value, next = m->rate * in.duration_s;
+  double value = now + next, rate = next, mean = now + next * 0.5;
+  double input[20] = {0.0};
+  int n;
+  input[0] = in.begin;
+  input[1] = in.end - in.begin + bend;
+  input[2] = -bend;
+  for (n = 0; n < 20; ++n) {
+    const double after = angle * (angle * (input[n] - now) - 2.0 * d * (n + 1.0) * next) *
+                         (1.0 / ((n + 1.0) * (n + 2.0)));
+    now = next;
+    next = after;
+    value += next;
+    rate += next * (n + 2.0);
+    mean += next * (1.0 / (n + 3.0));
+  }
+  m->value = value;
+  m->rate = rate / in.duration_s;
+  return mean;
+}
+
 static void mode_move(mode *m, double w, double d, segment in) {
   const double dt = in.duration_s;
-  const double bend = w * dt < 1e-6 ? 0.0 : bend_of(in);
+  const double bend = bend_of(in);
   const double c = -bend / (dt * dt);
   const double b = (in.end - in.begin + bend) / dt - 4.0 * d * c / w;
   const double a = in.begin - 2.0 * d * b / w - 2.0 * c / (w * w);
@@ -37,6 +61,17 @@ static void mode_move(mode *m, double w, double d, segment in) {
   mode_decay(w, d, dt, &cosine, &sine);
   m->value = a + b * dt + c * dt * dt + (cosine + d * w * sine) * offset + sine * rate;
   m->rate = b + 2.0 * c * dt - w * w * sine * offset + (cosine - d * w * sine) * rate;
+}
+
+/* Returns the mean of the mode over the segment. */
+static double mode_advance(mode *m, double w, double d, segment in) {
+  const mode last = *m;
+  const double angle = w * in.duration_s;
+  double left;
+  if (d < 1.0 ? angle < 1e-3 : 2.0 * d * angle < 1.0) return mode_advance_by_series(m, w, d, in);
+  mode_move(m, w, d, in);
+  left = (m->rate - last.rate) + 2.0 * d * w * (m->value - last.value);
+  return in.mean - left / (w * w * in.duration_s);
 }
 
 static double linear_modes_reset(mode *m, const double *v, int modes, double input) {
@@ -57,12 +92,9 @@ static segment linear_modes_step(mode *m, const double *v, int modes, segment in
     const double *p = v + 4 * i + 1;
     const double w = 6.283185307179586 / p[0];
     const mode last = m[i];
-    double left;
     begin += p[2] * last.value + p[3] * last.rate / w;
     if (in.duration_s > 0.0) {
-      mode_move(&m[i], w, p[1], in);
-      left = (m[i].rate - last.rate) + 2.0 * p[1] * w * (m[i].value - last.value);
-      mean += p[2] * (in.mean - left / (w * w * in.duration_s));
+      mean += p[2] * mode_advance(&m[i], w, p[1], in);
       mean += p[3] * (m[i].value - last.value) / (w * in.duration_s);
     }
     end += p[2] * m[i].value + p[3] * m[i].rate / w;
