@@ -368,6 +368,17 @@ class CModel(ExportedC):
         before = EVERYTHING.index("  - characteristic")
         self.compare(self.write("every.yaml", EVERYTHING[:before] + LINEAR_MODES + EVERYTHING[before:]))
 
+    def test_linear_modes_of_one_slow_mode_and_of_none(self):
+        slow = ", period1_s: 100, damping_ratio1: 100, gain1_mm_per_kpa: 0.3, lead1_mm_per_kpa: 0.1"
+        for modes in (slow, ""):
+            self.compare(self.write("modes.yaml", f"""name: modes
+source: "a test"
+valve:
+  - valve_lag: {{time_constant_s: 0.1}}
+actuator:
+  - linear_modes: {{direct_mm_per_kpa: 0.1{modes}}}
+"""))
+
     def test_a_lag_in_one_direction_follows_at_once_in_the_other(self):
         for filling_s, venting_s in ((0, 0.06), (0.03, 0)):
             for block in ("asymmetric_valve_lag", "chamber_lag"):

@@ -175,15 +175,10 @@ class Generator {
       const std::string number = std::to_string(i);
       text_ += "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" +
                with_commas(values, shortest) + "};\n";
-      const model::BlockSpec& spec = model_.blocks[i];
-      const std::size_t parts =
-          model::is<model::KelvinVoigt>(spec) ? (values.size() - 1) / 2
-          : model::is<model::PrandtlIshlinskii>(spec)
-              ? (values.size() - model::PrandtlIshlinskii<double>::parameters.size()) / 2
-          : model::is<model::LinearModes>(spec)            ? (values.size() - 1) / 4
-          : model::is<model::PressureDependentCreep>(spec) ? values.size() / 3
-                                                           : 0;
-      if (parts > 0) text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";
+      const model::BlockDescriptor& type = model::catalogue()[model_.blocks[i].type];
+      if (type.repeated.empty()) continue;
+      const std::size_t parts = (values.size() - type.parameters.size()) / type.repeated.size();
+      text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";
     }
   }
 
