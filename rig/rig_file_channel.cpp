@@ -5,6 +5,7 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
+#include "control/feedforward/pressure_plan.h"
 #include "rig/channel_defaults.h"
 
 namespace softgrip::rig {
@@ -133,20 +134,46 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
                           : "");
 }
 
+/// Largest time [s], gain [mm/kPa] and rate [1/kPa] of the model of a soft finger.
+constexpr double largest_model_value = 10;
+
+constexpr std::string_view modes_id = "linear_modes";
+
+/// Reports a value of a channel's model that is too large for a soft finger. `what` names the value.
+void report_model_value(MapReader& reader, const std::string& what, double value, const std::string& unit) {
+  reader.report("model",
+                what + " of the model is " + written(value) + " " + unit +
+                    ", but a controller allows at most " + written(largest_model_value) + " " + unit,
+                "check the unit of the values in the model file");
+}
+
+/// Reports a settled gain of the block `linear_modes` above 10 mm/kPa. The gains of single modes may be
+/// larger, because gains of opposite sign compensate each other.
+void check_modes(MapReader& reader, const model::Model& model) {
+  const model::Model modes =
+      model::only(model, [](const model::BlockInfo& info) { return info.id == modes_id; });
+  if (modes.blocks.empty()) return;
+  control::LimitSettings unit_step;
+  unit_step.pressure_min_kpa = 0;
+  unit_step.pressure_max_kpa = 1;
+  const double gain = control::settled_line(modes, unit_step).gain_mm_per_kpa;
+  if (std::abs(gain) <= largest_model_value) return;
+  report_model_value(reader, "the settled gain of `linear_modes`", gain,
+                     model::in_unit("mm/kPa", model.output_unit));
+}
+
 /// Reports the times, gains and rates of a channel's model that are too large for a soft finger: more than 10
 /// s, or more than 10 mm/kPa or 10/kPa. Model files may contain larger values, because they also describe
 /// slow processes and pressures in MPa. In the model of a finger, such a value has a wrong unit.
 void check_model_values(MapReader& reader, const model::Model& model) {
-  constexpr double largest = 10;
+  check_modes(reader, model);
   const std::vector<double> values = model::flat_values(model);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const model::ParameterSpec& spec = model::parameter_spec(model, i);
-    if (!(spec.latency || spec.per_pressure) || std::abs(values[i]) <= largest) continue;
-    const std::string unit = " " + model::in_unit(spec.unit, model.output_unit);
-    reader.report("model",
-                  "`" + model::parameter_path(model, i) + "` of the model is " + written(values[i]) + unit +
-                      ", but a controller allows at most " + written(largest) + unit,
-                  "check the unit of the values in the model file");
+    const std::string path = model::parameter_path(model, i);
+    const bool limited = spec.latency || (spec.per_pressure && !path.starts_with(modes_id));
+    if (!limited || std::abs(values[i]) <= largest_model_value) continue;
+    report_model_value(reader, "`" + path + "`", values[i], model::in_unit(spec.unit, model.output_unit));
   }
 }
 

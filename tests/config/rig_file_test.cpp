@@ -429,6 +429,27 @@ TEST(RigFile, AModelWithoutAPositiveSettledGainIsRefusedWithAnyFeedforward) {
             std::string::npos);
 }
 
+TEST(RigFile, OnlyTheSettledGainOfLinearModesIsLimited) {
+  const ScratchFolder folder;
+  const auto problems_with = [&](const std::string& second_gain) {
+    std::ofstream(folder.path() + "/opposite.yaml")
+        << "name: opposite\nsource: test\nactuator:\n  - linear_modes: {direct_mm_per_kpa: 0, "
+           "period1_s: 0.2, damping_ratio1: 1, gain1_mm_per_kpa: 12, lead1_mm_per_kpa: 11, "
+           "period2_s: 0.21, damping_ratio2: 1, gain2_mm_per_kpa: "
+        << second_gain << ", lead2_mm_per_kpa: -11}\n";
+    Problems problems;
+    const std::pair<std::string, std::string> model{"models/bench_twin.yaml",
+                                                    folder.path() + "/opposite.yaml"};
+    edited("rig.yaml", {model, model, model}, problems);
+    return problems.format();
+  };
+  EXPECT_EQ(problems_with("-11.7").find("controller allows"), std::string::npos) << problems_with("-11.7");
+  EXPECT_NE(problems_with("-1").find("the settled gain of `linear_modes` of the model is 11 mm/kPa, but a "
+                                     "controller allows at most 10 mm/kPa"),
+            std::string::npos)
+      << problems_with("-1");
+}
+
 TEST(RigFile, PathsAreRelativeToTheFile) {
   std::filesystem::current_path("/");
   const rig::RigFile rig = loaded("rig.yaml");
