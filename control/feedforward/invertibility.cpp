@@ -41,6 +41,7 @@ constexpr std::string_view creep_alone =
 constexpr std::string_view planned_needs_none =
     "use feedforward `planned`, which does not require an elastic element";
 
+
 /// Smallest immediate gain of a model with an element that responds immediately to the pressure. A
 /// Kelvin-Voigt spring without effect has the gain 1e-9 mm/kPa, which is below this limit.
 constexpr double least_gain_mm_per_kpa = 1e-8;
@@ -157,16 +158,44 @@ bool has_element(const model::Model& model) {
   });
 }
 
-/// Checks that the settled displacement rises with the command. Otherwise the PID controller has a positive
-/// feedback, and a plan has no solution.
+/// Returns the largest displacement, relative to the lowest command, in the first 10 s after a step from the
+/// lowest to the highest command [mm].
+double largest_after_step_mm(const model::Model& model, const LimitSettings& limits) {
+  constexpr double step_s = 0.005;
+  constexpr int steps = 2000;
+  model::Chain<double> chain(without_dead_time(model), {}, step_s);
+  chain.reset(limits.pressure_min_kpa);
+  const double begin_mm = chain.after(Station::load);
+  chain.step(0, limits.pressure_max_kpa);
+  double largest_mm = 0;
+  for (int i = 0; i < steps; ++i) {
+    largest_mm = std::max(largest_mm, std::abs(chain.after(Station::load) - begin_mm));
+    chain.step(step_s, limits.pressure_max_kpa);
+  }
+  return largest_mm;
+}
+
+/// Checks that the settled displacement rises with the command, and that the finger stays deflected under a
+/// constant command. With a falling displacement, the PID controller has a positive feedback, and a plan has
+/// no solution. If the finger returns, the settled gain is near 0, and a controller must raise the command
+/// without end.
 tl::expected<void, Refusal> check_settled_gain(const model::Model& model, const LimitSettings& limits) {
+  constexpr double least_share = 0.05;
   const double gain = settled_line(model, limits).gain_mm_per_kpa;
-  if (gain > 0) return {};
-  return tl::unexpected(Refusal{
-      "the model's settled gain between the lowest and the highest command is " + significant(gain) +
-          model::in_unit(" mm/kPa, but a controller requires a gain above 0", model.output_unit),
-      "if the finger moves in the negative direction, turn the sign of the sensor's calibration and of the "
-      "logs (`softgrip import --scale displacement=-1`), and identify the model again"});
+  const double settled_mm = gain * (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  const double largest_mm = largest_after_step_mm(model, limits);
+  if (gain > 0 && settled_mm >= least_share * largest_mm) return {};
+  const std::string text = "the model's settled gain between the lowest and the highest command is " +
+                           significant(gain) + model::in_unit(" mm/kPa", model.output_unit);
+  if (gain < 0 && settled_mm <= -least_share * largest_mm) {
+    return tl::unexpected(Refusal{
+        text + ", but a controller requires a gain above 0",
+        "if the finger moves in the negative direction, turn the sign of the sensor's calibration and of the "
+        "logs (`softgrip import --scale displacement=-1`), and identify the model again"});
+  }
+  return tl::unexpected(
+      Refusal{text + ": the finger does not stay deflected under a constant command, but a controller "
+                     "requires that at least 5 % of the largest displacement after a step remains"});
 }
 
 /// Checks that the model has an element that moves the finger. Only then can a plan be computed.

@@ -11,6 +11,7 @@
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/linear_modes.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_saturation.h"
@@ -217,6 +218,28 @@ TEST(Invertibility, PlanningNeedsAFingerThatMovesWithThePressure) {
   const auto refused = check(backwards, FeedforwardKind::planned);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().text.find("requires a gain above 0"), std::string::npos) << refused.error().text;
+}
+
+// A finger whose displacement decays under a constant command has a settled gain of about 0, with the sign of
+// a rounding error.
+TEST(Invertibility, AFingerThatDoesNotStayDeflectedIsRefusedWithoutAdviceOnTheSign) {
+  const auto modes = [](double direct_mm_per_kpa) {
+    return model::with_block(
+        {}, {model::block_type<model::LinearModes>(), {direct_mm_per_kpa, 0.5, 0.4, -0.3, 0.1}});
+  };
+  for (const double direct : {0.3, 0.3 + 5e-6, 0.3 - 5e-6, 0.31, 0.29}) {
+    const auto refused = check(modes(direct), FeedforwardKind::planned);
+    ASSERT_FALSE(refused) << direct;
+    const std::string text = refused.error().with_advice();
+    EXPECT_NE(text.find("the finger does not stay deflected under a constant command"), std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("sign"), std::string::npos) << text;
+  }
+  EXPECT_TRUE(check(modes(0.35), FeedforwardKind::planned));
+  EXPECT_TRUE(check(modes(0.35), FeedforwardKind::none));
+  const auto backwards = check(modes(0.2), FeedforwardKind::none);
+  ASSERT_FALSE(backwards);
+  EXPECT_NE(backwards.error().with_advice().find("turn the sign of the sensor"), std::string::npos);
 }
 
 TEST(Invertibility, ExtraLatencyHasBounds) {
