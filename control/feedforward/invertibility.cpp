@@ -41,6 +41,7 @@ constexpr std::string_view creep_alone =
 constexpr std::string_view planned_needs_none =
     "use feedforward `planned`, which does not require an elastic element";
 
+constexpr std::string_view no_inverse_needed = "use feedforward `planned` or `none` with this model";
 
 /// Smallest immediate gain of a model with an element that responds immediately to the pressure. A
 /// Kelvin-Voigt spring without effect has the gain 1e-9 mm/kPa, which is below this limit.
@@ -210,8 +211,8 @@ tl::expected<void, Refusal> check_full_model(const model::Model& model, const Li
   for (const model::BlockSpec& spec : model.blocks) blocks.push_back(model::catalogue()[spec.type].info);
   const std::string names = not_undone(blocks);
   if (!names.empty()) {
-    return tl::unexpected(Refusal{"the model contains " + names +
-                                  ", which has no inverse; use feedforward `none` with this model"});
+    return tl::unexpected(Refusal{"the model contains " + names + ", which has no inverse",
+                                  check_settled_gain(model, limits) ? no_inverse_needed : ""});
   }
   const model::Model body = body_of(model);
   if (!has_element(body)) return tl::unexpected(Refusal{"the model has no element that moves the finger"});

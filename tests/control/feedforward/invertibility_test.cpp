@@ -242,6 +242,16 @@ TEST(Invertibility, AFingerThatDoesNotStayDeflectedIsRefusedWithoutAdviceOnTheSi
   EXPECT_NE(backwards.error().with_advice().find("turn the sign of the sensor"), std::string::npos);
 }
 
+TEST(Invertibility, AModelWithoutAnInverseIsRefusedWithTheFeedforwardsThatNeedNone) {
+  const auto refused = check(model::with_block({}, {model::block_type<model::LinearModes>(), {0.1}}),
+                             FeedforwardKind::full_model);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(
+      refused.error().with_advice(),
+      "the model contains `linear_modes`, which has no inverse; use feedforward `planned` or `none` with "
+      "this model");
+}
+
 TEST(Invertibility, ExtraLatencyHasBounds) {
   const model::Model twin = model_named("bench_twin");
   EXPECT_FALSE(check_feedforward(twin, {FeedforwardKind::full_model, -0.001}, limits, sim::tick_s));
