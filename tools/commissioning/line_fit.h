@@ -31,7 +31,7 @@ struct Demands {
   double least_electrical_span = 0;  ///< smallest difference between the electrical values of the two
                                      ///< positions [V or mA]
   double most_noise_share = 0.02;    ///< largest permitted noise, as a share of the difference between
-                                   ///< electrical values of the two positions
+                                     ///< electrical values of the two positions
 };
 
 /// A straight line through the visits, fitted by least squares.
