@@ -56,6 +56,8 @@ struct RigKeys {
   Keys<drivers::GpioLineSettings> gpio_line, gpio_input;
 };
 [[nodiscard]] const RigKeys& rig_keys();
+/// Declares the keys of the boards and of the lines of the computer. Only rig_keys() calls this function.
+void declare_board_keys(RigKeys& keys);
 
 /// Returns the keys of each table of docs/reference/rig-file.md, with the name of the table.
 [[nodiscard]] std::vector<std::pair<std::string, std::vector<document::KeyFacts>>> rig_tables();

@@ -257,7 +257,6 @@ class Search {
 
 std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, const StructureGrid& grid) {
   std::vector<double> peaks;
-  peaks.reserve(records.size());
   for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
   const auto start = [&](double delay_s, double filling_s, double venting_s, double growing, double trained) {
     return NonlinearNumbers{.delay_s = delay_s * grid.time_unit_s,
@@ -273,8 +272,7 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
 
 /// Returns each start point with several rate limits, which replace three quarters of each lag. A lag that
 /// was fitted to a ramp of duration T has a time constant of about T / 1.5. The share of the pressure range
-/// that the ramp covers is unknown. A rate limit that is too fast has no effect and no gradient, so three
-/// different shares are tried.
+/// that the ramp covers is unknown. A rate limit that is too fast has no effect, so three shares are tried.
 std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumbers>& starts,
                                                const StructureGrid& grid) {
   std::vector<NonlinearNumbers> limited;
@@ -298,8 +296,7 @@ double least_elastic_mm_per_kpa(const StructureGrid& grid) {
 }
 
 double longest_mode_s(const StructureGrid& grid) {
-  constexpr double longest_s = 1e6;  // limit of the block linear_modes
-  return std::min(longest_mode_in_units * grid.time_unit_s, longest_s);
+  return std::min(longest_mode_in_units * grid.time_unit_s, 1e6);  // 1e6 s: limit of the block
 }
 
 NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {

@@ -15,8 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A cause that may explain one effect: the named cause, or another cause in its place. The gauge check
-/// decides between these causes.
+/// A cause between which the gauge check decides: a named cause, or another cause in its place.
 struct Standing {
   Cause cause;
   StructureFit fit;
@@ -24,8 +23,7 @@ struct Standing {
   bool implied = false;
 };
 
-/// A possible explanation of the logs, with one cause for each named cause: either the named cause itself or
-/// its replacement.
+/// A possible explanation of the logs: for each named cause, either this cause or its replacement.
 struct Explanation {
   /// for each named cause, the index of the cause that this explanation contains
   std::vector<std::size_t> standing;
@@ -59,8 +57,7 @@ class Weighing {
     const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
     explain(false);
     evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
-    // If at least one explanation fits the gauge readings, causes that the logs do not list are not
-    // considered.
+    // Causes that the logs do not list are considered only if no other explanation fits.
     const std::size_t left_by_logs = shapes_.size();
     if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
     if (shapes_.size() > left_by_logs)
@@ -101,8 +98,7 @@ class Weighing {
     return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
-  /// Lists every combination in which each named cause is kept or replaced, and the sensor shapes of these
-  /// combinations.
+  /// Lists every combination in which each named cause is kept or replaced, with its sensor shapes.
   /// @param with_implied  true: replacements are included even if the logs do not list them as alternatives.
   void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
@@ -181,9 +177,8 @@ class Weighing {
     replace(now);
   }
 
-  /// Removes those alternatives of a named cause that contradict the gauge readings. The gauge check may have
-  /// added a cause that the logs did not list. In this case, the added cause comes first, and the cause that
-  /// the logs named becomes its alternative.
+  /// Removes those alternatives of a named cause that contradict the gauge readings. If the gauge check has
+  /// added a cause, the added cause comes first, and the named cause becomes its alternative.
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
@@ -203,8 +198,7 @@ class Weighing {
                           ", but the gauge readings contradict this cause. The gauge readings indicate " +
                           std::string(standing[left.front()].cause.id) +
                           ", but this cause explains the logs less well than the first cause. Check that "
-                          "nothing was changed between the "
-                          "logs and the gauge check");
+                          "nothing was changed between the logs and the gauge check");
     }
     chosen.alternatives = std::move(alternatives);
   }
@@ -302,8 +296,7 @@ class Weighing {
     const std::string besides = out.empty() ? "" : " The gauge check rules out: " + out + ".";
     if (check.outcome != GaugeOutcome::unexplained) {
       return "The gauge check does not decide between the explanations. The gauge readings fit these "
-             "explanations "
-             "equally well: " +
+             "explanations equally well: " +
              left + " (" + with_unit(check.noise_mm) +
              " of noise in the gauge readings). Take gauge readings beyond the largest reading of the logs, "
              "take more gauge readings, or use a more accurate gauge." +
