@@ -188,7 +188,7 @@ TEST(BoardMapFile, ARequestMustHoldAWholeNumber) {
   text.replace(text.find("kind: uint16"), 12, "kind: int32");
   const Result result = read(text);
   ASSERT_EQ(result.problems.size(), 1U) << result.problems.format();
-  EXPECT_NE(result.problems.list()[0].message.find("2 registers"), std::string::npos);
+  EXPECT_NE(result.problems.list()[0].message.find("2 consecutive registers"), std::string::npos);
   EXPECT_EQ(result.problems.list()[0].at.line, 6);
 }
 
