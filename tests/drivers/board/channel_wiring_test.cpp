@@ -31,7 +31,7 @@ TEST(ChannelWiring, EachMistakeIsOneProblemThatNamesItsChannel) {
       {[](auto& w) { w[1].displacement.unit = ElectricalUnit::milliampere; }, "wired in mA"},
       {[](auto& w) { w[1].valve.scaling.x1 = 0; }, "scaling points"},
       {[](auto& w) { w[1].displacement.scaling.y1 = -5; }, "scaling points"},
-      {[](auto& w) { w[1].displacement.valid_max = 0.1; }, "is empty"},
+      {[](auto& w) { w[1].displacement.valid_max = 0.1; }, "below the highest valid signal"},
       {[](auto& w) { w[1].displacement.error_codes[0].tolerance = -1; }, "tolerance"},
   };
   for (const auto& [make, expected] : mistakes) {
