@@ -27,7 +27,8 @@ void declare_gpio(RigKeys& keys) {
   keys.gpio_input = {optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"},
                               "only for inputs: pull resistor of the line")};
   keys.gpio_enable = {required("on_fault", &GpioSettings::keeps_enable_on_fault, {"drop", "keep"},
-                               "`enable`: behaviour during a fault other than F501 and F502")};
+                               "only for `enable`: the output is switched off (`drop`) or stays on (`keep`) "
+                               "during a fault other than F501 and F502")};
 }
 
 void declare_modbus(RigKeys& keys) {
@@ -96,8 +97,8 @@ void declare_converters(RigKeys& keys) {
       required(
           "timeout_s", &drivers::IioHeartbeat::timeout_s, {0.001, 3600},
           "time without a change of this output after which the external circuit switches off the valves")};
-  keys.seed = {
-      required("seed", &RigFile::seed, document::Range{.lower = 0}, "the same seed gives the same noise")};
+  keys.seed = {required("seed", &RigFile::seed, document::Range{.lower = 0},
+                        "seed of the simulated noise; equal seeds give equal noise")};
   keys.simulated = {
       required("watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s, {0, 60},
                "time without an exchange after which the simulated outputs go to rest; 0: no watchdog")};

@@ -79,9 +79,9 @@ TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
   for (const Case& test : {Case{"slow", FeedforwardKind::none, 0.01, 0.01, 1.5, "the stability margin",
                                 "moves faster than this feedforward"},
                            Case{"noisy", FeedforwardKind::full_model, 1, 0.001, 50,
-                                "other than the stability margin", "the sensor's noise"},
+                                "effects other than the stability margin", "the sensor's noise"},
                            Case{"off", FeedforwardKind::full_model, 0.001, 0.15, 50,
-                                "other than the stability margin", "the model's mismatch"}}) {
+                                "effects other than the stability margin", "the model's mismatch"}}) {
     SCOPED_TRACE(test.name);
     TuneTask task = quick_task(test.kind);
     task.noise_mm = test.noise_mm;

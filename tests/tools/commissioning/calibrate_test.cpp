@@ -67,7 +67,7 @@ TEST(FitLine, RefusesNonsenseAndSaysWhy) {
   EXPECT_EQ(why([](auto&) {}), "accepted");
   EXPECT_NE(why([](auto& list) { list[1].reference = list[3].reference = 1.5; }).find("too close"),
             std::string::npos);
-  EXPECT_NE(why([](auto& list) { list[1].electrical = list[3].electrical = 1.1; }).find("does not follow"),
+  EXPECT_NE(why([](auto& list) { list[1].electrical = list[3].electrical = 1.1; }).find("changes too little"),
             std::string::npos);
   EXPECT_NE(why([](auto& list) { list[2].noise = 0.2; }).find("too much noise"), std::string::npos);
   EXPECT_NE(why([](auto& list) { list[2].reference = 3; }).find("not repeatable"), std::string::npos);
@@ -290,7 +290,7 @@ TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {
   KnowingOperator person([this] { return truth_mm(); });
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   ASSERT_FALSE(line);
-  EXPECT_NE(line.error().text.find("does not follow"), std::string::npos) << line.error().text;
+  EXPECT_NE(line.error().text.find("changes too little"), std::string::npos) << line.error().text;
 }
 
 TEST_F(CalibrateTest, AnAnswerThatIsNoNumberIsRefusedAndTheRigIsSafe) {

@@ -332,7 +332,7 @@ TEST_F(DoctorTest, AWrongSignOfTheSensor) {
   motion.up[0].displacement_mm.mean = -5;
   judge_motion(rig_, 0, rest, motion, {}, findings_);
   expect("finger left", Verdict::fail, "moved -5.00 mm");
-  EXPECT_NE(finding("finger left").advice.find("sign"), std::string::npos);
+  EXPECT_NE(finding("finger left").advice.find("direction opposite to the prediction"), std::string::npos);
 }
 
 TEST_F(DoctorTest, WhatToDoFollowsFromWhatTheBusKnows) {

@@ -93,7 +93,7 @@ TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
   EXPECT_EQ(gain.recalibrated.feedforward, control::FeedforwardKind::none);
   EXPECT_EQ(gain.recalibrated.rmse_mm, gain.pid_alone.rmse_mm);
   EXPECT_FALSE(gain.recalibrated.refused.empty());
-  EXPECT_NE(gain.notes().front().find("PID alone"), std::string::npos);
+  EXPECT_NE(gain.notes().front().find("PID controller alone"), std::string::npos);
 }
 
 TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {

@@ -49,7 +49,7 @@ TEST(ExperimentCheck, ARigThatEndsEarlyOrGoesLessFarBreaksIt) {
   sysid::Log restless = log;
   for (std::size_t i = 0; i < restless.size(); i += 2)
     restless.pressure_command_kpa[i] = std::max(0.0, restless.pressure_command_kpa[i] - 1);
-  EXPECT_NE(sentence(restless).find("travelled"), std::string::npos) << sentence(restless);
+  EXPECT_NE(sentence(restless).find("changed by a total of"), std::string::npos) << sentence(restless);
 }
 
 TEST(ExperimentCheck, AWallOnTheWayIsNoticedAndASofterFingerIsNot) {

@@ -161,8 +161,8 @@ TEST(Registry, CoversTheCatalogue) {
   }
   EXPECT_EQ(none,
             (std::set<std::string_view>{"asymmetric_valve_lag", "bouc_wen", "chamber_lag", "characteristic",
-                                        "kelvin_voigt", "pressure_dependent_creep", "pressure_regulator",
-                                        "quantisation", "rate_limit", "sensor_noise"}));
+                                        "kelvin_voigt", "linear_modes", "pressure_dependent_creep",
+                                        "pressure_regulator", "quantisation", "rate_limit", "sensor_noise"}));
   EXPECT_FALSE(find_cause("bouc_wen"));
   EXPECT_FALSE(find_cause("no such thing"));
   EXPECT_TRUE(std::is_sorted(all_causes().begin(), all_causes().end(), [](const Cause& a, const Cause& b) {

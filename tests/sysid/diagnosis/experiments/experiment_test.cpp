@@ -234,9 +234,9 @@ TEST(Advice, SaysWhatNoWaveformCanDo) {
   };
   EXPECT_NE(text("valve_lag", "sensor_lag", {}).find("pressure_kpa"), std::string::npos);
   EXPECT_EQ(text("valve_lag", "sensor_lag", {true, false, true}), "");
-  EXPECT_NE(text("stiffening", "sensor_nonlinearity", {}).find("change the load"), std::string::npos);
+  EXPECT_NE(text("stiffening", "sensor_nonlinearity", {}).find("Change the load"), std::string::npos);
   EXPECT_NE(text("thermal_gain", "sensor_drift", {}).find("temperature_c"), std::string::npos);
-  EXPECT_NE(text("slow_creep", "actuator_threshold", {}).find("no waveform"), std::string::npos);
+  EXPECT_NE(text("slow_creep", "actuator_threshold", {}).find("No waveform"), std::string::npos);
   EXPECT_EQ(text("slow_creep", "actuator_threshold", {false, false, true}), "");
 }
 
