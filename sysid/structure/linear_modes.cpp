@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -34,19 +35,12 @@ std::vector<double> periods_s(const StructureGrid& grid, int count) {
   return list;
 }
 
-Eigen::VectorXd readings_of(const std::vector<Record>& records) {
-  const std::vector<RowPlace> rows = rows_of(records);
-  Eigen::VectorXd readings(static_cast<Eigen::Index>(rows.size()));
-  Eigen::Index next = 0;
-  for (const RowPlace& row : rows) readings(next++) = records[row.record].reading_mm[row.sample];
-  return readings;
-}
-
 /// Held-out losses of linear least squares, on the blocks of a division.
 class HeldOutLeastSquares {
  public:
+  /// `records` and `division` must outlive the object.
   HeldOutLeastSquares(const std::vector<Record>& records, const Division& division, Eigen::MatrixXd columns)
-      : division_(division), rows_(rows_of(records)), columns_(std::move(columns)) {
+      : records_(records), division_(division), rows_(rows_of(records)), columns_(std::move(columns)) {
     for (Eigen::Index c = 0; c < columns_.cols(); ++c) {
       const double size = columns_.col(c).norm();
       if (size > 0) columns_.col(c) /= size;
@@ -56,49 +50,40 @@ class HeldOutLeastSquares {
   [[nodiscard]] BlockLosses losses(const Eigen::VectorXd& target) const {
     BlockLosses losses(division_.blocks.size());
     for (std::size_t fold = 0; fold < division_.folds; ++fold) {
-      const Eigen::VectorXd error = target - columns_ * weights(target, fold);
+      const BlockLosses all = mean_squares(target - columns_ * weights(target, fold));
       for (std::size_t b = 0; b < losses.size(); ++b) {
-        if (division_.blocks[b].fold == fold) losses[b] = mean_square(error, division_.blocks[b]);
+        if (division_.blocks[b].fold == fold) losses[b] = all[b];
       }
     }
     return losses;
   }
   /// Returns the mean square of a series on each block.
   [[nodiscard]] BlockLosses mean_squares(const Eigen::VectorXd& series) const {
+    std::vector<std::vector<double>> samples;
+    for (const Record& record : records_)
+      samples.emplace_back(record.size(), std::numeric_limits<double>::quiet_NaN());
+    Eigen::Index next = 0;
+    for (const RowPlace& row : rows_) samples[row.record][row.sample] = series(next++);
     BlockLosses losses;
-    for (const Block& block : division_.blocks) losses.push_back(mean_square(series, block));
+    for (const Block& block : division_.blocks) losses.push_back(loss_of(samples[block.record], block));
     return losses;
   }
 
  private:
   [[nodiscard]] Eigen::VectorXd weights(const Eigen::VectorXd& target, std::size_t fold) const {
-    Eigen::VectorXd fitted = Eigen::VectorXd::Ones(target.size());
-    for (const Block& block : division_.blocks) {
-      if (block.fold != fold) continue;
-      for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const RowPlace& row = rows_[i];
-        if (row.record == block.record && row.sample >= block.hidden_first && row.sample < block.hidden_last)
-          fitted(static_cast<Eigen::Index>(i)) = 0;
-      }
-    }
+    const std::vector<Record> rest = without_fold(records_, division_, fold);
+    Eigen::VectorXd fitted(target.size());
+    Eigen::Index next = 0;
+    for (const RowPlace& row : rows_)
+      fitted(next++) = std::isfinite(rest[row.record].reading_mm[row.sample]) ? 1 : 0;
     const Eigen::MatrixXd used = fitted.asDiagonal() * columns_;
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
     gram.selfadjointView<Eigen::Lower>().rankUpdate(used.transpose());
     gram.diagonal().array() += set_ridge;
     return gram.selfadjointView<Eigen::Lower>().ldlt().solve(used.transpose() * target);
   }
-  [[nodiscard]] double mean_square(const Eigen::VectorXd& series, const Block& block) const {
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const RowPlace& row = rows_[i];
-      if (row.record != block.record || row.sample < block.first || row.sample >= block.last) continue;
-      sum += std::pow(series(static_cast<Eigen::Index>(i)), 2);
-      ++count;
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0;
-  }
 
+  const std::vector<Record>& records_;
   const Division& division_;
   std::vector<RowPlace> rows_;
   Eigen::MatrixXd columns_;
@@ -111,7 +96,7 @@ std::vector<NonlinearNumbers> starts_of_next_mode(const std::vector<Record>& rec
                                                   const StructureFitOptions& options) {
   structure.modes = numbers.modes.size() + 1;
   const ColumnLayout layout(structure, grid, records);
-  const Eigen::VectorXd readings = readings_of(records);
+  const Eigen::VectorXd readings = readings_of_rows(records);
   StructureColumns columns(records, structure, grid);
   std::vector<double> delays_s{numbers.delay_s};
   if (structure.delay && !structure.lag) {
@@ -148,7 +133,7 @@ std::vector<NonlinearNumbers> starts_of_next_mode(const std::vector<Record>& rec
 bool lacks_linear_dynamics(const FitPoint& point, const std::vector<Record>& records,
                            const StructureGrid& grid, const Division& division,
                            const std::vector<double>& losses_mm2) {
-  std::vector<Record> few = with_fewer_readings(records, StructureFitOptions{}.most_rows);
+  const std::vector<Record> few = with_fewer_readings(records, StructureFitOptions{}.most_rows);
   BaseStructure set{.hysteretic = false,
                     .delay = false,
                     .lag = false,
@@ -164,10 +149,13 @@ bool lacks_linear_dynamics(const FitPoint& point, const std::vector<Record>& rec
   }
   set.modes = numbers.modes.size();
   const HeldOutLeastSquares squares(few, division, structure_columns(few, set, grid, numbers));
-  const Eigen::VectorXd readings = readings_of(few);
+  const Eigen::VectorXd readings = readings_of_rows(few);
+  std::vector<std::vector<double>> errors;
   for (std::size_t r = 0; r < few.size(); ++r)
-    few[r].reading_mm = residual(few[r], predict(point.model, few[r], point.starts[r]));
-  const Eigen::VectorXd left = readings_of(few);
+    errors.push_back(residual(few[r], predict(point.model, few[r], point.starts[r])));
+  Eigen::VectorXd left(readings.size());
+  Eigen::Index next = 0;
+  for (const RowPlace& row : rows_of(few)) left(next++) = errors[row.record][row.sample];
   return is_clearly_less(squares.losses(left), squares.mean_squares(left)) ||
          is_clearly_less(squares.losses(readings), losses_mm2);
 }

@@ -194,6 +194,14 @@ std::vector<RowPlace> rows_of(const std::vector<Record>& records) {
   return rows;
 }
 
+Eigen::VectorXd readings_of_rows(const std::vector<Record>& records) {
+  const std::vector<RowPlace> rows = rows_of(records);
+  Eigen::VectorXd readings(static_cast<Eigen::Index>(rows.size()));
+  Eigen::Index next = 0;
+  for (const RowPlace& row : rows) readings(next++) = records[row.record].reading_mm[row.sample];
+  return readings;
+}
+
 StructureColumns::StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
                                    const StructureGrid& grid)
     : records_(records),

@@ -79,6 +79,8 @@ struct RowPlace {
   std::size_t sample = 0;
 };
 [[nodiscard]] std::vector<RowPlace> rows_of(const std::vector<Record>& records);
+/// Returns the reading of each row [mm].
+[[nodiscard]] Eigen::VectorXd readings_of_rows(const std::vector<Record>& records);
 
 /// The regressor matrix. It has one row per reading and the columns of ColumnLayout. The columns before own()
 /// are in kPa, and their weights are in mm/kPa. The other columns are dimensionless, and their weights are in

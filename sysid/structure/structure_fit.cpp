@@ -70,11 +70,8 @@ class Search {
         grid_(grid),
         options_(options),
         layout_(structure, grid, records),
+        readings_(readings_of_rows(records)),
         columns_(records, structure_, grid) {
-    const std::vector<RowPlace> rows = rows_of(records);
-    readings_.resize(static_cast<Eigen::Index>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      readings_(static_cast<Eigen::Index>(i)) = records[rows[i].record].reading_mm[rows[i].sample];
     add_coordinates();
   }
 
