@@ -70,6 +70,14 @@ std::vector<double> with_bins(std::vector<double> series, std::size_t bins) {
   return series;
 }
 
+std::vector<std::vector<double>> minus(std::vector<std::vector<double>> from,
+                                       const std::vector<std::vector<double>>& what) {
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    for (std::size_t i = 0; i < from[r].size(); ++i) from[r][i] -= what[r][i];
+  }
+  return from;
+}
+
 double bin_s(const std::vector<Record>& records, double least_s) {
   double longest_s = 0;
   for (const Record& record : records) longest_s = std::max(longest_s, record.mean_interval_s());

@@ -26,6 +26,10 @@ using Binned = std::vector<std::vector<double>>;
 /// one bin less than the series of the full record; the last value is then repeated.
 [[nodiscard]] std::vector<double> with_bins(std::vector<double> series, std::size_t bins);
 
+/// Returns the difference of two series per record, with equal lengths.
+[[nodiscard]] std::vector<std::vector<double>> minus(std::vector<std::vector<double>> from,
+                                                     const std::vector<std::vector<double>>& what);
+
 /// Returns the rate |dp/dt| of the drive in bins [kPa/s], after a peak detector that decays with a time
 /// constant of 0.5 s.
 [[nodiscard]] std::vector<double> peak_rate_of(const Record& record, double bin_s);

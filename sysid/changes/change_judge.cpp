@@ -45,13 +45,6 @@ double rms_about_mean(const std::vector<double>& series) {
   return sums.count > 0 ? std::sqrt(std::max(0.0, sums.variance_x())) / sums.count : 0;
 }
 
-Binned minus(Binned from, const Binned& what) {
-  for (std::size_t r = 0; r < from.size(); ++r) {
-    for (std::size_t b = 0; b < from[r].size(); ++b) from[r][b] -= what[r][b];
-  }
-  return from;
-}
-
 void add(PairedLosses& losses, const PairedLosses& more) {
   losses.worse.insert(losses.worse.end(), more.worse.begin(), more.worse.end());
   losses.better.insert(losses.better.end(), more.better.begin(), more.better.end());
@@ -98,8 +91,7 @@ class Judge {
     judged.healthy_mm = spread_.usual_rms();
     judged.allowed_mm = spread_.allowed_rms();
     judged.input_factor = spread_.input_factor();
-    if (judged.input_factor > limits::unfamiliar_factor)
-      diagnosis.warnings.push_back(unfamiliar_input(judged.input_factor));
+    if (has_unfamiliar_input(judged)) diagnosis.warnings.push_back(unfamiliar_input(judged.input_factor));
     const std::vector<std::string> other_starts = readings.other_starts();
     for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
     std::vector<FittedEffect> found;

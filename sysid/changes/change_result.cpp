@@ -4,16 +4,10 @@
 
 #include "base/numbers.h"
 #include "sysid/changes/next_steps.h"
-#include "sysid/limits/limits.h"
+#include "sysid/changes/unfamiliar_input.h"
 
 namespace softgrip::sysid {
 namespace {
-
-bool has_unfamiliar_input(const ChangeDiagnosis& diagnosis) {
-  return std::any_of(diagnosis.readings.begin(), diagnosis.readings.end(), [](const JudgedChange& judged) {
-    return judged.input_factor > limits::unfamiliar_factor;
-  });
-}
 
 using result::decimals, result::Fields, result::list_of, result::number, result::shown, result::Table,
     result::Value;
@@ -97,7 +91,7 @@ Fields fields_of(const JudgedChange& judged) {
       {"unexplained", judged.left_over},
       {"structure_left", judged.left_over},
       {"zero", "change of the zero offset", number(judged.zero_mm, 2, unit)},
-      {"gain_percent", "gain change that healthy runs show, too", number(judged.gain_percent, 2, "%")},
+      {"gain_percent", "gain change within the spread of healthy runs", number(judged.gain_percent, 2, "%")},
       {"not_tested", result::keyed(judged.not_tested)},
       {"runs", list_of(judged.runs, fields_of_run)},
       {"tried", list_of(judged.tried, fields_of_tried)}};
@@ -164,10 +158,11 @@ std::string interval_text(const ChangeCause& cause) {
 }
 
 std::string change_sentence(const ChangeDiagnosis& diagnosis) {
-  if (diagnosis.verdict == ChangeVerdict::unchanged && has_unfamiliar_input(diagnosis))
+  const auto& readings = diagnosis.readings;
+  if (diagnosis.verdict == ChangeVerdict::unchanged &&
+      std::any_of(readings.begin(), readings.end(), has_unfamiliar_input))
     return "No change is detectable, but the input of the later logs is unlike the inputs of the healthy "
-           "logs. "
-           "Therefore, a larger difference from the baseline model is permitted.";
+           "logs. Therefore, a larger difference from the baseline model is permitted.";
   if (diagnosis.verdict == ChangeVerdict::unchanged)
     return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
            "from each other.";

@@ -5,18 +5,10 @@
 
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-using Residuals = std::vector<std::vector<double>>;
-
-Residuals difference(Residuals from, const Residuals& what) {
-  for (std::size_t r = 0; r < from.size(); ++r) {
-    for (std::size_t i = 0; i < from[r].size(); ++i) from[r][i] -= what[r][i];
-  }
-  return from;
-}
 
 /// @param differing  readings whose residual is the difference between two predictions.
 Disagreement disagreement(const LaterReadings& differing) {
@@ -31,7 +23,7 @@ Base with_model(Base base, const HealthyModel& model) {
 /// Returns the largest disagreement that is expected about another healthy run, from the mean disagreement
 /// about the healthy units.
 Disagreement expected_disagreement(const Base& base, const HealthyModel& other) {
-  const LaterReadings all(base, base.records, difference(base.left, other.left));
+  const LaterReadings all(base, base.records, minus(base.left, other.left));
   Disagreement expected;
   double units = 0;
   for (std::size_t unit = 0; unit < base.units.count(); ++unit) {
@@ -51,17 +43,22 @@ Disagreement expected_disagreement(const Base& base, const HealthyModel& other) 
 }  // namespace
 
 Disagreement added_disagreement(const Base& base, const std::vector<Record>& later) {
-  const Residuals own = residuals_of(base, later);
+  const std::vector<std::vector<double>> own = residuals_of(base, later);
   Disagreement most;
   for (const HealthyModel& other : base.alternatives) {
     const Disagreement healthy = expected_disagreement(base, other);
-    const Residuals differing = difference(own, residuals_of(with_model(base, other), later));
+    const std::vector<std::vector<double>> differing =
+        minus(own, residuals_of(with_model(base, other), later));
     const Disagreement now = disagreement(readings_of(base, later, differing));
     if (!std::isfinite(now.mean_square) || !std::isfinite(now.loss)) continue;  // the alternative diverges
     most.mean_square = std::max(most.mean_square, now.mean_square - healthy.mean_square);
     most.loss = std::max(most.loss, now.loss - healthy.loss);
   }
   return most;
+}
+
+bool has_unfamiliar_input(const JudgedChange& judged) {
+  return judged.input_factor > limits::unfamiliar_factor;
 }
 
 }  // namespace softgrip::sysid

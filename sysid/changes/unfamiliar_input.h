@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sysid/changes/base.h"
+#include "sysid/changes/change.h"
 #include "sysid/changes/healthy_runs.h"
 
 namespace softgrip::sysid {
@@ -16,5 +17,9 @@ namespace softgrip::sysid {
 /// zero for an input like the healthy inputs, so this input permits no larger error.
 /// @param later  later records at the full sampling rate.
 [[nodiscard]] Disagreement added_disagreement(const Base& base, const std::vector<Record>& later);
+
+/// Returns true if the input of the later logs increases the permitted error so much that the answer states
+/// it.
+[[nodiscard]] bool has_unfamiliar_input(const JudgedChange& judged);
 
 }  // namespace softgrip::sysid
