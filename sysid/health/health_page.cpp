@@ -63,8 +63,8 @@ void add_reference(const FingerHealth& health, std::size_t number, sysid::Chart&
   const auto& reference = health.references[number];
   if (!reference || reference->points < 2) return;
   sysid::Series band;
-  band.label = reference->slope ? "reference value at this temperature, ± 3 standard deviations"
-                                : "reference value since the last maintenance, ± 3 standard deviations";
+  band.label = reference->slope ? "reference value at this temperature ± 3 standard deviations"
+                                : "reference value ± 3 standard deviations";
   band.style = sysid::Series::Style::band;
   band.colour = sysid::Colour::faint;
   for (std::size_t p = 0; p < health.points.size(); ++p) {

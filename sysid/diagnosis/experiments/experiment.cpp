@@ -63,10 +63,10 @@ std::string without_pairs(const Diagnosis& d) {
   }
   if (open.empty())
     return "No experiment was designed, because the diagnosis contains no two explanations that an "
-           "experiment can separate";
+           "experiment can separate.";
   return "No experiment can be designed for " + open +
          ", because these causes belong to a different model structure. Experiments are predicted only for "
-         "the structure of the given model";
+         "the structure of the given model.";
 }
 
 class Designer {

@@ -16,7 +16,7 @@ bool has(const Cause& cause, Advice advice) {
 
 constexpr const char* vary_temperature =
     "Add a temperature_c column and repeat the run at a different temperature. If the gain depends on the "
-    "temperature, the cause is not wear or drift";
+    "temperature, the cause is not wear or drift.";
 
 /// Returns the advice for two causes that no waveform can separate: change the load, or leave the finger
 /// vented. Returns an empty text if neither action separates them.
@@ -28,12 +28,12 @@ std::string instead_of_waveform(const Cause& one, const Cause& other, const std:
                              "a wider range, or change the load or move the object that the finger touches"
                            : "Change the load or move the object that the finger touches") +
            ". A nonlinearity that stays at the same reading is caused by the sensor. A nonlinearity that "
-           "moves with the load is not caused by the sensor";
+           "moves with the load is not caused by the sensor.";
   }
   if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
     return "Leave the finger vented for an hour and record the zero offset of the sensor, because no "
            "waveform in softgrip's list of experiments separates " +
-           names;
+           names + ".";
   }
   return {};
 }
@@ -50,7 +50,7 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
       known && (first.station == model::Station::valve) != (second.station == model::Station::valve);
   if (one_in_valve && !facts.pressure_recorded) {
     advice.push_back("Record pressure_kpa, the pressure at the valve, because this signal separates " +
-                     names);
+                     names + ".");
   }
   const bool may_be_warmth =
       has(first, Advice::record_temperature) && has(second, Advice::record_temperature);
@@ -62,7 +62,7 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
   if (instead.empty() && advice.empty()) {
     instead = "No waveform in softgrip's list of experiments separates " + names +
-              " within the limits of the rig. A separation requires less sensor noise or a higher pressure";
+              " within the limits of the rig. A separation requires less sensor noise or a higher pressure.";
   }
   if (!instead.empty()) advice.push_back(std::move(instead));
   return advice;
@@ -78,8 +78,7 @@ std::string gauge_advice(const std::vector<double>& positions_mm, const std::vec
          " known positions from " + significant(distinct.front(), 3) + " to " +
          significant(distinct.back(), 3) +
          " mm, first in increasing, then in decreasing and then again in increasing order. Write the reading "
-         "of the sensor at each "
-         "position to " +
+         "of the sensor at each position to " +
          gauge_positions_file + ", and diagnose again with --gauge " + gauge_positions_file;
 }
 
