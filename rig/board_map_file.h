@@ -1,7 +1,7 @@
 #pragma once
 // Reads board files (YAML) into a BoardMap. Unknown keys are errors. All problems of a file are reported
 // together.
-// The suffixes of keys in rig files and board maps that give the unit of a value: V, mA or kPa.
+// Defines the suffixes of keys in rig files and board maps that give the unit of a value: V, mA or kPa.
 
 #include <array>
 #include <optional>

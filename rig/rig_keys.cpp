@@ -146,7 +146,7 @@ void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultS
   if (!renamed || reader.child(key.name, false) == nullptr) return;
   (void)reader.integer(key.name, any);
   reader.report(old_name,
-                "`slipped_cycles` is the old name of `overrun_cycles`, but the file contains both keys",
+                "`" + old_name + "` is the old name of `overrun_cycles`, but the file contains both keys",
                 "overrun_cycles alone");
 }
 

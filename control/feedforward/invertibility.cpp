@@ -181,6 +181,7 @@ double largest_after_step_mm(const model::Model& model, const LimitSettings& lim
 /// no solution. If the finger returns, the settled gain is near 0, and a controller must raise the command
 /// without end.
 tl::expected<void, Refusal> check_settled_gain(const model::Model& model, const LimitSettings& limits) {
+  // With a smaller share, holding the finger would need more than 20 times the pressure that moves it there.
   constexpr double least_share = 0.05;
   const double gain = settled_line(model, limits).gain_mm_per_kpa;
   const double settled_mm = gain * (limits.pressure_max_kpa - limits.pressure_min_kpa);

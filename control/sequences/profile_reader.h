@@ -1,6 +1,6 @@
 #pragma once
 // Reads the profile of a pressure step: a test signal, or points between which the pressure is linear.
-// Ranges of the numbers in the steps of a sequence file.
+// Defines the ranges of the numbers in the steps of a sequence file.
 
 #include "control/tick/sequence.h"
 #include "document/reader.h"

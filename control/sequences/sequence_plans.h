@@ -1,7 +1,6 @@
 #pragma once
-// Plans a sequence before it starts. For each channel with the feedforward `planned`, computes the command
-// for each step to a displacement.
-// Compares the steps of a sequence with the limits of a rig, and plans the motion of the steps.
+// Plans a sequence before it starts: compares its steps with the limits of a rig, and plans their motion. For
+// each channel with the feedforward `planned`, computes the command for each step to a displacement.
 
 #include <stop_token>
 #include <vector>

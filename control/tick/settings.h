@@ -1,7 +1,7 @@
 #pragma once
-// Defines the settings of a RigController. The reader of the rig file (rig/rig_file.h) creates them.
-// Defines the settings of one channel, in the units of the rig file. The caller checks the settings with
-// settings_problems() (settings.h); the controller does not check them.
+// Defines the settings of a RigController and of its channels, in the units of the rig file. The reader of
+// the rig file (rig/rig_file.h) creates them. The caller checks them with settings_problems(). The controller
+// does not check them.
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
-// Creates the text of run.json.
-// The provenance of a recording: all contents of run.json except the events.
+// Defines the provenance of a recording, which is all contents of run.json except the events, and creates the
+// text of run.json.
 
 #include <cstdint>
 #include <memory>

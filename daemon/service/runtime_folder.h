@@ -1,8 +1,8 @@
 #pragma once
-// The folder for data that softgrip programs share until the machine restarts: the locks of boards, and the
-// copy of the rig file of the running daemon. No other user can write to this folder.
-// Keeps a copy of softgripd's rig file in the runtime folder while softgripd runs. After a crash, the copy
-// ensures that the safe outputs do not depend on later edits of the rig file.
+// Manages the folder for data that softgrip programs share until the machine restarts: the locks of boards,
+// and the copy of the rig file of the running daemon. No other user can write to this folder. Keeps a copy of
+// softgripd's rig file in the runtime folder while softgripd runs. After a crash, the copy ensures that the
+// safe outputs do not depend on later edits of the rig file.
 
 #include <optional>
 #include <string>

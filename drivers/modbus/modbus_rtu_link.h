@@ -1,6 +1,6 @@
 #pragma once
-// Implements a link to Modbus RTU modules on a serial line.
-// Implements Modbus RTU over a TCP connection to a serial server.
+// Implements links to Modbus RTU modules: on a serial line of this computer, and on the serial line of a
+// serial server to which a TCP connection leads.
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
-// A connection to softgripd's socket. In each direction, every message is one line with a JSON object
+// Connects programs to softgripd's socket. In each direction, every message is one line with a JSON object
 // (docs/reference/socket-api.md).
-// The connection of a gateway to the daemon. After a loss, the connection is opened again.
+// A gateway opens its connection again after a loss.
 
 #include <chrono>
 #include <functional>

@@ -1,5 +1,5 @@
 #pragma once
-// One connection of a browser or a metrics collector. No call blocks.
+// Serves one connection of a browser or a metrics collector. No call blocks.
 // Finds the end of an HTTP request and checks that the server supports the request. Uses no sockets.
 
 #include <cstddef>
