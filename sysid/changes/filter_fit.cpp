@@ -48,7 +48,11 @@ class FilterBank {
  public:
   FilterBank(const std::vector<Record>& records, const Units& units, FilterKind kind, double bin_s,
              double largest_kpa)
-      : unit_indices_(units), units_(units.count()), bin_s_(bin_s), largest_kpa_(largest_kpa) {
+      : unit_indices_(units),
+        is_usable_(units.are_runs() || kind == FilterKind::valve),
+        units_(units.count()),
+        bin_s_(bin_s),
+        largest_kpa_(largest_kpa) {
     for (std::size_t r = 0; r < records.size(); ++r) add(records, r, units, kind);
     for (std::size_t u = 0; u < units_; ++u) {
       const Eigen::MatrixXd part = columns_of(u);
@@ -114,11 +118,12 @@ class FilterBank {
   }
 
   /// Returns the weights if the filter bank improves the predictions of the model significantly
-  /// (is_better()). Otherwise returns a result without weights.
+  /// (is_better()) and the units show that it predicts another run. Otherwise returns a result without
+  /// weights.
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
-    if (is_better(compare(losses_of(plain, left, unit_indices_, bin_s_), 0, seed)))
+    if (is_usable_ && is_better(compare(losses_of(plain, left, unit_indices_, bin_s_), 0, seed)))
       return {target.weights, left, target.left_mm};
     return {{}, plain, rms_of(target.plain_left)};
   }
@@ -201,6 +206,10 @@ class FilterBank {
   }
 
   Units unit_indices_;
+  /// False if there is only one run, because its halves contain similar inputs. Many weights can then fit
+  /// both halves well and predict another run badly. The pressure of a valve is an exception, because the
+  /// filter bank is the only part of its model.
+  bool is_usable_;
   std::size_t units_;
   double bin_s_, largest_kpa_;
   Eigen::MatrixXd columns_;

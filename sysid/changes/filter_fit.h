@@ -18,7 +18,8 @@ namespace softgrip::sysid {
 /// Weights of a filter bank, fitted with the ridge parameter that leads to the smallest error in the
 /// cross-validation.
 struct FittedFilters {
-  /// One weight per column of filter_columns(); empty if the filter bank does not improve the prediction.
+  /// One weight per column of filter_columns(); empty if the filter bank does not improve the prediction, or
+  /// if there is only one run and the filter bank is not the only part of the model.
   Eigen::VectorXd weights;
   Binned left;         ///< residual of each cross-validation unit, predicted by a fit to all other units;
                        ///< NaN: no reading

@@ -37,12 +37,15 @@ Binned left_of(const Record& record, double share) {
   return left;
 }
 
-std::vector<FittedFilters> fitted(const std::vector<Binned>& models) {
-  const std::vector<Record> records{waving()};
+/// Returns the filter banks for residuals of `runs` equal runs.
+/// @param models  residual of each model in one run.
+std::vector<FittedFilters> fitted(const std::vector<Binned>& models, std::size_t runs = 2,
+                                  FilterKind kind = FilterKind::finger) {
+  const std::vector<Record> records(runs, waving());
   const Units units(records);
   std::vector<LeftByUnit> left;
-  for (const Binned& model : models) left.emplace_back(units.count() + 1, model);
-  return fit_filters(records, units, FilterKind::finger, bin_s, 22, left, 1);
+  for (const Binned& model : models) left.emplace_back(units.count() + 1, Binned(runs, model.front()));
+  return fit_filters(records, units, kind, bin_s, 22, left, 1);
 }
 
 TEST(FilterFit, ExplainsWhatFollowsTheDrive) {
@@ -52,8 +55,15 @@ TEST(FilterFit, ExplainsWhatFollowsTheDrive) {
   EXPECT_GT(filters.left_mm, 0.005);
 }
 
+TEST(FilterFit, OneRunShowsNoFilterBankOfAFinger) {
+  const std::vector<Binned> residual{left_of(waving(), 0.1)};
+  EXPECT_EQ(fitted(residual, 1)[0].weights.size(), 0);
+  EXPECT_GT(fitted(residual, 1, FilterKind::valve)[0].weights.size(), 0);
+  EXPECT_GT(fitted(residual, 2)[0].weights.size(), 0);
+}
+
 TEST(FilterFit, OfWhatDoesNotFollowTheDriveIsNone) {
-  const FittedFilters filters = fitted({left_of(waving(), 0)})[0];
+  const FittedFilters filters = fitted({left_of(waving(), 0)}, 1, FilterKind::valve)[0];
   EXPECT_EQ(filters.weights.size(), 0);
   const Binned model = left_of(waving(), 0);
   const auto begin = static_cast<std::size_t>(begin_s(waving()) / bin_s);
