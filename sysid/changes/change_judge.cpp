@@ -124,6 +124,7 @@ class Judge {
       white = readings.white(found);
       judged.loss_left = per_bin(readings, white);
     }
+    accept_named(diagnosis.causes, judged);
     finish(readings, effects, found, judged);
     diagnosis.readings.push_back(std::move(judged));
   }
@@ -146,6 +147,19 @@ class Judge {
     own.numbers.back() = 0;  // the baseline model already contains the gain at the mean temperature
     base_.left = minus(std::move(base_.left), healthy.added({own}));
     base_.gain_per_c = own.numbers.front();
+  }
+
+  /// Removes the reasons for a rejection from the causes that are named or listed as alternatives. Each
+  /// search tries all causes, so a cause can be rejected before or after the search that names it.
+  void accept_named(const std::vector<ChangeCause>& causes, JudgedChange& judged) const {
+    for (const ChangeCause& cause : causes) {
+      if (cause.judged != base_.judged) continue;
+      for (TriedCause& tried : judged.tried) {
+        if (tried.id == cause.id ||
+            std::count(cause.alternatives.begin(), cause.alternatives.end(), tried.id) > 0)
+          tried.rejected.clear();
+      }
+    }
   }
 
   static std::vector<FittedEffect> with(std::vector<FittedEffect> found, const FittedEffect& one) {

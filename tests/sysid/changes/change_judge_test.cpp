@@ -1,5 +1,8 @@
 #include "sysid/changes/change_judge.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -48,6 +51,22 @@ TEST_F(ChangeJudge, FindsADelay) {
   ASSERT_EQ(diagnosis.causes.size(), 1U);
   EXPECT_EQ(diagnosis.causes.front().id, "transport_delay");
   EXPECT_EQ(diagnosis.causes.front().judged, Judged::pressure);
+}
+
+/// The first search names a cause and leaves an error, so a second search tries all causes again.
+TEST_F(ChangeJudge, ANamedCauseHasNoReasonForARejection) {
+  const ChangeDiagnosis diagnosis = judged({.delay_s = 0.06, .valve_lag_s = 0.1});
+  ASSERT_EQ(diagnosis.causes.size(), 1U);
+  EXPECT_TRUE(diagnosis.readings.front().left_over);
+  std::vector<std::string> accepted = diagnosis.causes.front().alternatives;
+  accepted.push_back(diagnosis.causes.front().id);
+  std::size_t tried_and_accepted = 0;
+  for (const TriedCause& tried : diagnosis.readings.front().tried) {
+    if (std::count(accepted.begin(), accepted.end(), tried.id) == 0) continue;
+    EXPECT_EQ(tried.rejected, "") << tried.id;
+    ++tried_and_accepted;
+  }
+  EXPECT_EQ(tried_and_accepted, accepted.size());
 }
 
 /// Returns logs with steps of the command. The pressure is the prediction of `base` with noise.
