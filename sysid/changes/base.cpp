@@ -26,9 +26,9 @@ namespace {
 /// at least finger_memory_s [s].
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// Lower limits of the variation between healthy runs. `least_gain_spread` applies to the relative gain, and
-/// `least_zero_share` applies to the zero offset as a share of the span. No finger repeats more accurately
-/// from day to day than these limits.
+/// Lower limits of the variation between several healthy runs. `least_gain_spread` applies to the relative
+/// gain, and `least_zero_share` applies to the zero offset as a share of the span. No finger repeats more
+/// accurately from day to day than these limits.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
@@ -231,7 +231,9 @@ void spread(Base& base) {
   }
   const double free = std::max(1.0, count - 1);
   base.zero_mm = count > 0 ? zeros / count : 0;
-  base.gain_spread = std::max(least_gain_spread, count > 0 ? std::sqrt(gains / count) : 0);
+  const bool is_measured = base.units.are_runs() || base.judged == Judged::pressure;
+  base.gain_spread = std::max(is_measured ? least_gain_spread : limits::usual_gain_spread,
+                              count > 0 ? std::sqrt(gains / count) : 0);
   base.zero_spread_mm =
       std::max(least_zero_share * base.span_mm,
                count > 0 ? std::sqrt(std::max(0.0, zeros_squared - zeros * zeros / count) / free) : 0);

@@ -55,7 +55,8 @@ struct Base : HealthyModel {
   double noise_mm = 0;        ///< standard deviation of the noise between consecutive readings
   Units units;                ///< division of the healthy records into units for cross-validation
   double span_mm = 0;
-  double gain_spread = 0;  ///< relative spread of the gain between the healthy runs
+  double gain_spread = 0;  ///< relative spread of the gain between the healthy runs; with one healthy run, at
+                           ///< least limits::usual_gain_spread for the displacement
   double zero_mm = 0;      ///< mean difference between the healthy readings and the predictions
   double zero_spread_mm = 0;
   double bin_s = 0.05;

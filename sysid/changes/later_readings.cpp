@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include <Eigen/Cholesky>
@@ -10,6 +11,7 @@
 #include "base/statistics.h"
 #include "sysid/changes/filter_bank.h"
 #include "sysid/fitting/start_estimate.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -32,9 +34,12 @@ std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
 }
 
 /// Returns the largest relative difference of the gain that does not count as a change. A further run of an
-/// unchanged finger may show this difference.
+/// unchanged finger may show this difference. The spread of several healthy runs was estimated from these
+/// runs. With one healthy run, the spread is assumed, and the difference is that of two gains.
 double free_gain(const Base& base) {
-  return t_quantile(static_cast<double>(base.units.count() - 1)) * base.gain_spread;
+  const bool is_assumed = !base.units.are_runs() && base.judged == Judged::displacement;
+  return base.gain_spread * (is_assumed ? limits::deviate * std::numbers::sqrt2
+                                        : t_quantile(static_cast<double>(base.units.count() - 1)));
 }
 
 Binned peak_rates_of(const std::vector<Record>& records, double bin_s, const Binned& left) {

@@ -88,6 +88,9 @@ inline constexpr double tolerated_noise = 0.5;
 /// Number of quantities in which repeated runs of a finger differ independently. They are the zero offset,
 /// the gain, and the creep that remains from the previous run.
 inline constexpr double run_directions = 3;
+/// Standard deviation of the gain of a finger between runs without a change, as a share of the gain. It is
+/// used if there is only one healthy run, so the variation cannot be measured.
+inline constexpr double usual_gain_spread = 0.01;
 /// Length of the blocks that the bootstrap resamples [s]. A block lasts longer than the fast part of the
 /// creep.
 inline constexpr double block_s = 5;

@@ -149,6 +149,16 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   }
 }
 
+TEST(Change, WithOneHealthyLogASmallGainDifferenceIsNoChange) {
+  const auto is_changed = [](double gain) {
+    const auto d = diagnose_change({log_of({}, 1)}, {log_of({.gain = gain}, 5)});
+    EXPECT_TRUE(d) << d.error();
+    return d->verdict != ChangeVerdict::unchanged;
+  };
+  EXPECT_FALSE(is_changed(0.2 * 0.9555));  // reported as ageing if only 0.8 % of the gain were free
+  EXPECT_TRUE(is_changed(0.2 * 0.94));
+}
+
 TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   const auto d = diagnose_change(logs_of({.with_temperature = true}, 1),
                                  logs_of({.per_c = 0.01, .with_temperature = true}, 5));
