@@ -157,7 +157,7 @@ softgrip_room(tools/exporting
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # Commands that move a rig without the daemon: doctor and calibrate.
 softgrip_room(tools/commissioning
-  USES base base/net document model model/file control/elements control/feedforward drivers/board drivers/modbus rig/plc_file
+  USES base base/net base/result document model model/file control/elements control/feedforward drivers/board drivers/modbus rig/plc_file
        rig/web_file rig daemon/loop daemon/recording tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation

@@ -97,7 +97,7 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
 ExitCode conclude(const DoctorOptions& options, const doctor::Examination& examination,
                   const doctor::Findings& findings) {
   if (options.json) {
-    print_json(doctor::json_of(examination, findings));
+    print_json(result::json_of(doctor::fields_of(examination, findings)));
   } else {
     const std::size_t columns = on_terminal() ? terminal_columns() : 100;
     std::fputs(doctor::text_of(examination, findings, columns, wants_colour()).c_str(), stdout);

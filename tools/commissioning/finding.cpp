@@ -1,7 +1,6 @@
 #include "tools/commissioning/finding.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
 
@@ -108,21 +107,20 @@ std::string text_of(const Examination& examination, const Findings& findings, st
   return text + verdict_line(examination, findings);
 }
 
-nlohmann::ordered_json json_of(const Examination& examination, const Findings& findings) {
-  nlohmann::ordered_json json{{"rig", examination.rig},
-                              {"rig_file", examination.rig_file},
-                              {"daemon_runs", examination.daemon_runs},
-                              {"moved", examination.moved},
-                              {"simulated", examination.simulated},
-                              {"verdict", name_of(findings.worst())},
-                              {"findings", nlohmann::ordered_json::array()}};
-  for (const Finding& finding : findings.list()) {
-    json["findings"].push_back({{"name", finding.name},
-                                {"verdict", name_of(finding.verdict)},
-                                {"text", finding.text},
-                                {"advice", finding.advice}});
-  }
-  return json;
+result::Fields fields_of(const Examination& examination, const Findings& findings) {
+  const auto of_finding = [](const Finding& finding) -> result::Fields {
+    return {{"name", finding.name},
+            {"verdict", name_of(finding.verdict)},
+            {"text", finding.text},
+            {"advice", finding.advice}};
+  };
+  return {{"rig", examination.rig},
+          {"rig_file", examination.rig_file},
+          {"daemon_runs", examination.daemon_runs},
+          {"moved", examination.moved},
+          {"simulated", examination.simulated},
+          {"verdict", name_of(findings.worst())},
+          {"findings", result::list_of(findings.list(), of_finding)}};
 }
 
 }  // namespace softgrip::tools::doctor

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include "base/result/result.h"
 
 namespace softgrip::tools::doctor {
 
@@ -59,7 +59,8 @@ struct Examination {
 /// line states the overall verdict.
 [[nodiscard]] std::string text_of(const Examination& examination, const Findings& findings,
                                   std::size_t columns, bool colour);
-[[nodiscard]] nlohmann::ordered_json json_of(const Examination& examination, const Findings& findings);
+/// Returns the content of the output of `softgrip doctor --json`.
+[[nodiscard]] result::Fields fields_of(const Examination& examination, const Findings& findings);
 
 /// Returns a number with its noun in singular or plural: "1 warning", "2 warnings".
 [[nodiscard]] std::string counted(std::size_t count, std::string_view noun);

@@ -511,7 +511,7 @@ TEST(Findings, SimulatedIsPartOfTheVerdict) {
             "rig x (rig.yaml), SIMULATED: softgripd not running; checked without motion\n"
             " ok   board  answers\n"
             "fit to run. SIMULATED: no board, valve, finger or sensor was examined\n");
-  EXPECT_TRUE(json_of(simulated, findings)["simulated"]);
+  EXPECT_TRUE(result::json_of(fields_of(simulated, findings))["simulated"]);
 }
 
 TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {
