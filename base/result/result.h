@@ -59,6 +59,9 @@ struct Field {
   Value value;
 };
 
+/// Calls fields_of() from the namespace of the item.
+inline constexpr auto fields_of_item = [](const auto& item) { return fields_of(item); };
+
 /// Returns a number whose text has `digits` significant digits and, after a blank, the unit. A number that is
 /// absent or not finite is null in JSON and "-" as text.
 [[nodiscard]] Value number(const std::optional<double>& value, int digits = 4, std::string_view unit = {});
@@ -69,6 +72,12 @@ struct Field {
 [[nodiscard]] Value shown(Value value, std::string text, bool numeric = false);
 /// Returns a value with this text. If the text is empty, the value is null in JSON.
 [[nodiscard]] Value or_null(std::string text);
+/// Returns the value of an optional item. If there is no item, the value is null in JSON. The function
+/// `to_value` returns the value of an item.
+template <class Item, class ToValue = decltype(fields_of_item)>
+[[nodiscard]] Value or_null(const std::optional<Item>& item, const ToValue& to_value = {}) {
+  return item ? Value(std::invoke(to_value, *item)) : Value();
+}
 
 /// Returns an object with one entry for each pair of a key and a value.
 template <class Pairs>
@@ -77,9 +86,6 @@ template <class Pairs>
   for (const auto& [key, value] : pairs) fields.emplace_back(std::string(key), Value(value));
   return fields;
 }
-
-/// Calls fields_of() from the namespace of the item.
-inline constexpr auto fields_of_item = [](const auto& item) { return fields_of(item); };
 
 /// Returns an array with one element for each item. The function `to_value` returns the element for an item.
 template <std::ranges::range Items, class ToValue = decltype(fields_of_item)>

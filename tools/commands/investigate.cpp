@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -128,10 +127,13 @@ std::optional<RigTracking> on_rig(const InvestigateOptions& options, const Playg
 
 std::string completed(const Investigation& investigation, const Playground& ground,
                       const std::optional<ClosedLoopGain>& gain, const std::optional<RigTracking>& tracking) {
-  nlohmann::ordered_json json = json_of(investigation, ground.name);
-  if (gain) add_closed_loop(json, *gain);
-  if (tracking) add_rig_tracking(json, *tracking);
-  return json.dump(2) + "\n";
+  result::Fields fields = fields_of(investigation, ground.name);
+  if (gain) {
+    result::Fields closed_loop = fields_of(*gain);
+    if (tracking) closed_loop.emplace_back("on_rig", fields_of(*tracking));
+    fields.emplace_back("closed_loop", std::move(closed_loop));
+  }
+  return result::json_text(fields);
 }
 
 void print_end(const Investigation& investigation, const std::optional<ClosedLoopGain>& gain,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <future>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
@@ -25,7 +24,6 @@ namespace softgrip::tools {
 namespace {
 
 using control::FeedforwardKind;
-using Json = nlohmann::ordered_json;
 
 constexpr double rate_hz = 100;
 /// Number of simulated rigs with which the gains are searched, and number of additional rigs with which the
@@ -159,13 +157,13 @@ bool is_of_the_whole_model(const ClosedLoopScheme& scheme) {
   return scheme.feedforward == FeedforwardKind::full_model && !scheme.part;
 }
 
-Json scheme_json(const ClosedLoopScheme& scheme) {
-  Json json{{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
-            {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
-            {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm},
-            {"feedforward", control::name_of(scheme.feedforward)}};
-  if (scheme.part) json["feedforward_without"] = scheme.part->left_out;
-  return json;
+result::Fields fields_of_scheme(const ClosedLoopScheme& scheme) {
+  result::Fields fields{{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
+                        {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
+                        {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm},
+                        {"feedforward", control::name_of(scheme.feedforward)}};
+  if (scheme.part) fields.emplace_back("feedforward_without", scheme.part->left_out);
+  return fields;
 }
 
 }  // namespace
@@ -222,17 +220,16 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
   return gain;
 }
 
-void add_closed_loop(Json& json, const ClosedLoopGain& gain) {
-  json["closed_loop"] = {{"recalibrated_rmse_mm", gain.recalibrated.rmse_mm},
-                         {"extended_rmse_mm", gain.extended.rmse_mm},
-                         {"pid_alone_rmse_mm", gain.pid_alone.rmse_mm},
-                         {"reference", gain.reference()},
-                         {"gains",
-                          {{"recalibrated", scheme_json(gain.recalibrated)},
-                           {"extended", scheme_json(gain.extended)},
-                           {"pid_alone", scheme_json(gain.pid_alone)}}},
-                         {"notes", gain.notes()},
-                         {"wall_s", gain.wall_s}};
+result::Fields fields_of(const ClosedLoopGain& gain) {
+  return {{"recalibrated_rmse_mm", gain.recalibrated.rmse_mm},
+          {"extended_rmse_mm", gain.extended.rmse_mm},
+          {"pid_alone_rmse_mm", gain.pid_alone.rmse_mm},
+          {"reference", gain.reference()},
+          {"gains", result::Fields{{"recalibrated", fields_of_scheme(gain.recalibrated)},
+                                   {"extended", fields_of_scheme(gain.extended)},
+                                   {"pid_alone", fields_of_scheme(gain.pid_alone)}}},
+          {"notes", gain.notes()},
+          {"wall_s", gain.wall_s}};
 }
 
 }  // namespace softgrip::tools

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/result/result.h"
 #include "control/elements/feedforward.h"
 #include "control/elements/pid.h"
 #include "control/feedforward/invertibility.h"
@@ -68,8 +67,7 @@ struct ClosedLoopGain {
 
 [[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);
 
-/// Adds the result of the comparison as the member "closed_loop" to the JSON of diagnosis.json or
-/// investigation.json.
-void add_closed_loop(nlohmann::ordered_json& json, const ClosedLoopGain& gain);
+/// Returns the value of the key "closed_loop" of diagnosis.json and investigation.json.
+[[nodiscard]] result::Fields fields_of(const ClosedLoopGain& gain);
 
 }  // namespace softgrip::tools

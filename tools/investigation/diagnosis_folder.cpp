@@ -35,7 +35,7 @@ std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSour
   json["model"] = {{"hash", model::model_hash(diagnosis.extended_model)}, {"file", "model.yaml"}};
   json["logs"] = result::json_of(sysid::logs_value(source.logs));
   add_experiment(json, consequences.experiment, experiment_file);
-  if (consequences.closed_loop) add_closed_loop(json, *consequences.closed_loop);
+  if (consequences.closed_loop) json["closed_loop"] = result::json_of(fields_of(*consequences.closed_loop));
   return json.dump(2) + "\n";
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <functional>
 #include <system_error>
 #include <utility>
 
@@ -14,12 +14,22 @@
 namespace softgrip::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using result::Fields, result::number, result::shown, result::Value;
 using sysid::Verdict;
 
 /// Largest number of steps of an investigation. It exceeds the number of waveforms that experiments can
 /// apply.
 constexpr std::size_t most_steps = 20;
+
+/// Returns the causes of a step, each with its alternatives, as text.
+std::string causes_of(const InvestigationStep& step) {
+  std::string text;
+  for (std::size_t i = 0; i < step.causes.size(); ++i) {
+    text += (i == 0 ? "" : "; ") + step.causes[i];
+    for (const std::string& alternative : step.alternatives[i]) text += " or " + alternative;
+  }
+  return text.empty() ? "-" : text;
+}
 
 InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& folder) {
   InvestigationStep step;
@@ -211,42 +221,47 @@ tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOpti
   return Investigator(options).run();
 }
 
-Json json_of(const Investigation& investigation, const std::string& rig) {
-  Json json{{"schema", 1},
-            {"rig", rig},
-            {"end", name_of(investigation.end)},
-            {"why", investigation.why},
-            {"verdict", sysid::name_of(investigation.last.verdict)},
-            {"budget_minutes", investigation.budget_minutes},
-            {"spent_minutes", investigation.spent_minutes}};
-  json["causes"] =
-      investigation.steps.empty() ? std::vector<std::string>{} : investigation.steps.back().causes;
-  json["steps"] = Json::array();
-  for (const InvestigationStep& step : investigation.steps) {
-    Json one{{"folder", step.folder},
-             {"verdict", sysid::name_of(step.verdict)},
-             {"sentence", step.sentence},
-             {"heldout_rmse_mm",
-              {{"recalibrated", step.recalibrated_rmse_mm}, {"extended", step.extended_rmse_mm}}},
-             {"causes", step.causes},
-             {"alternatives", step.alternatives}};
-    one["experiment"] = nullptr;
-    if (!step.experiment.empty()) {
-      one["experiment"] = {{"waveform", step.experiment},
-                           {"predicted_separation_sigma", step.predicted_separation_sigma},
-                           {"minutes", step.minutes},
-                           {"log", step.log}};
-      if (step.experiment == gauge_check_name) one["experiment"]["predicted_separation_sigma"] = nullptr;
-    }
-    json["steps"].push_back(std::move(one));
-  }
-  json["logs"] = Json::array();
-  for (const sysid::Log& log : investigation.logs)
-    json["logs"].push_back({{"path", log.path}, {"sha256", log.sha256}});
-  json["gauge"] = nullptr;
-  if (const auto& gauge = investigation.gauge)
-    json["gauge"] = {{"path", gauge->path}, {"sha256", gauge->sha256}};
-  return json;
+Fields fields_of(const InvestigationStep& step) {
+  const bool has_experiment = !step.experiment.empty();
+  const bool separates = has_experiment && step.experiment != gauge_check_name;
+  const Value separation =
+      number(separates ? std::optional(step.predicted_separation_sigma) : std::nullopt, 3);
+  const Value minutes = number(has_experiment ? std::optional(step.minutes) : std::nullopt, 2);
+  const Fields experiment{{"waveform", step.experiment},
+                          {"predicted_separation_sigma", separation},
+                          {"minutes", minutes},
+                          {"log", step.log}};
+  return {{"folder", "step", step.folder},
+          {"verdict", "verdict", sysid::name_of(step.verdict)},
+          {"sentence", step.sentence},
+          {"heldout_rmse_mm",
+           Fields{{"recalibrated", step.recalibrated_rmse_mm}, {"extended", step.extended_rmse_mm}}},
+          {"causes", "causes", shown(step.causes, causes_of(step))},
+          {"alternatives", result::list_of(step.alternatives, std::identity())},
+          {"", "held-out RMSE, refitted [mm]", number(step.recalibrated_rmse_mm, 3)},
+          {"", "extended [mm]", number(step.extended_rmse_mm, 3)},
+          {"experiment", "next experiment",
+           has_experiment ? shown(experiment, step.experiment) : shown(Value(), "-")},
+          {"", "predicted separation [standard deviations]", separation},
+          {"", "rig time [min]", minutes}};
+}
+
+Fields fields_of(const Investigation& investigation, const std::string& rig) {
+  const auto of_file = [](const auto& file) -> Fields {
+    return {{"path", file.path}, {"sha256", file.sha256}};
+  };
+  const auto& steps = investigation.steps;
+  return {{"schema", 1},
+          {"rig", rig},
+          {"end", name_of(investigation.end)},
+          {"why", investigation.why},
+          {"verdict", sysid::name_of(investigation.last.verdict)},
+          {"budget_minutes", investigation.budget_minutes},
+          {"spent_minutes", investigation.spent_minutes},
+          {"causes", steps.empty() ? std::vector<std::string>() : steps.back().causes},
+          {"steps", result::list_of(steps)},
+          {"logs", result::list_of(investigation.logs, of_file)},
+          {"gauge", result::or_null(investigation.gauge, of_file)}};
 }
 
 }  // namespace softgrip::tools

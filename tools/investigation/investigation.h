@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
 #include "base/exit_code.h"
+#include "base/result/result.h"
 #include "model/model.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/identification/validate.h"
@@ -111,9 +111,11 @@ struct NotInvestigated {
 
 [[nodiscard]] tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options);
 
-/// Returns the JSON of investigation.json. `rig` is the path of the rig file, or the command that played the
-/// experiments.
-[[nodiscard]] nlohmann::ordered_json json_of(const Investigation& investigation, const std::string& rig);
+/// Returns the fields of one step. The fields with a title are a row in the table of the page.
+[[nodiscard]] result::Fields fields_of(const InvestigationStep& step);
+/// Returns the content of investigation.json. `rig` is the path of the rig file, or the command that played
+/// the experiments.
+[[nodiscard]] result::Fields fields_of(const Investigation& investigation, const std::string& rig);
 
 /// Returns the HTML page of an investigation.
 /// @param rig          path of the rig file, or the command that plays the experiments

@@ -25,38 +25,6 @@ sysid::Tone tone_of(InvestigationEnd end) {
   return sysid::Tone::bad;
 }
 
-std::string causes_of(const InvestigationStep& step) {
-  std::string text;
-  for (std::size_t i = 0; i < step.causes.size(); ++i) {
-    text += (i == 0 ? "" : "; ") + step.causes[i];
-    for (const std::string& alternative : step.alternatives[i]) text += " or " + alternative;
-  }
-  return text.empty() ? "-" : text;
-}
-
-sysid::Table course_of(const Investigation& investigation) {
-  sysid::Table table;
-  table.caption = "Steps: diagnosis of all logs so far, and the experiment that followed";
-  table.header = {"step",
-                  "verdict",
-                  "causes",
-                  "held-out RMSE, refitted [mm]",
-                  "extended [mm]",
-                  "next experiment",
-                  "predicted separation [standard deviations]",
-                  "rig time [min]"};
-  table.numeric = {false, false, false, true, true, false, true, true};
-  for (const InvestigationStep& step : investigation.steps) {
-    const bool separates = !step.experiment.empty() && step.experiment != gauge_check_name;
-    table.rows.push_back({step.folder, sysid::name_of(step.verdict), causes_of(step),
-                          significant(step.recalibrated_rmse_mm, 3), significant(step.extended_rmse_mm, 3),
-                          step.experiment.empty() ? "-" : step.experiment,
-                          separates ? significant(step.predicted_separation_sigma, 3) : "-",
-                          step.experiment.empty() ? "-" : significant(step.minutes, 2)});
-  }
-  return table;
-}
-
 }  // namespace
 
 std::string investigation_html(const Investigation& investigation, const std::string& rig,
@@ -71,7 +39,8 @@ std::string investigation_html(const Investigation& investigation, const std::st
   page.section("Steps");
   page.paragraph(significant(investigation.spent_minutes, 3) + " of " +
                  significant(investigation.budget_minutes, 3) + " minutes on the rig were used.");
-  page.table(course_of(investigation));
+  page.table(result::table_of("Steps: diagnosis of all logs so far, and the experiment that followed",
+                              investigation.steps));
   for (const InvestigationStep& step : investigation.steps) {
     page.section(step.folder);
     page.paragraph(step.sentence);

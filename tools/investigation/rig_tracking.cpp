@@ -1,7 +1,6 @@
 #include "tools/investigation/rig_tracking.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
@@ -95,11 +94,11 @@ tl::expected<RigTracking, NotPlayed> track_on_rig(const ExperimentRig& rig, cons
   return tracking;
 }
 
-void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking) {
-  json["closed_loop"]["on_rig"] = {{"recalibrated_rmse_mm", tracking.recalibrated_rmse_mm},
-                                   {"extended_rmse_mm", tracking.extended_rmse_mm},
-                                   {"cycles", tracking.cycles},
-                                   {"of", "reading minus reference"}};
+result::Fields fields_of(const RigTracking& tracking) {
+  return {{"recalibrated_rmse_mm", tracking.recalibrated_rmse_mm},
+          {"extended_rmse_mm", tracking.extended_rmse_mm},
+          {"cycles", tracking.cycles},
+          {"of", "reading minus reference"}};
 }
 
 }  // namespace softgrip::tools

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
+#include "base/result/result.h"
 #include "model/model.h"
 #include "tools/investigation/closed_loop_gain.h"
 #include "tools/investigation/experiment_rig.h"
@@ -26,7 +26,7 @@ struct RigTracking {
     const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
     const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);
 
-/// Adds the measured result as the member "closed_loop.on_rig" to the JSON of investigation.json.
-void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking);
+/// Returns the value of the key "closed_loop.on_rig" of investigation.json.
+[[nodiscard]] result::Fields fields_of(const RigTracking& tracking);
 
 }  // namespace softgrip::tools

@@ -43,6 +43,8 @@ TEST(Result, WhatIsNotANumberIsNullInJson) {
   EXPECT_TRUE(json_of(Value()).is_null());
   EXPECT_TRUE(json_of(or_null("")).is_null());
   EXPECT_EQ(or_null("").text, "");
+  EXPECT_TRUE(json_of(or_null(std::optional<Grip>(), fields_of)).is_null());
+  EXPECT_EQ(json_of(or_null(std::optional(Grip{"a", 1, true}), fields_of))["run"], "a");
   EXPECT_EQ(json_of(or_null("why")), "why");
 }
 

@@ -33,12 +33,10 @@ TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   EXPECT_TRUE(gain.extended.refused.empty()) << gain.extended.refused;
   EXPECT_LT(gain.extended.rmse_mm, 0.5 * gain.recalibrated.rmse_mm);
   EXPECT_EQ(gain.reference(), "13 ± 7 mm at 0.2 Hz");
-  nlohmann::ordered_json json{{"schema", 1}};
-  add_closed_loop(json, gain);
-  EXPECT_EQ(json["schema"], 1);
-  EXPECT_EQ(json["closed_loop"]["extended_rmse_mm"], gain.extended.rmse_mm);
-  EXPECT_EQ(json["closed_loop"]["gains"]["recalibrated"]["feedforward"], "planned");
-  EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward"], "full_model");
+  const auto json = result::json_of(fields_of(gain));
+  EXPECT_EQ(json["extended_rmse_mm"], gain.extended.rmse_mm);
+  EXPECT_EQ(json["gains"]["recalibrated"]["feedforward"], "planned");
+  EXPECT_EQ(json["gains"]["extended"]["feedforward"], "full_model");
 }
 
 TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
@@ -51,10 +49,9 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   EXPECT_LT(gain.extended.rmse_mm, 0.5 * gain.pid_alone.rmse_mm);
   EXPECT_FALSE(gain.extended.refused.empty());
   EXPECT_FALSE(gain.extended.trace.displacement_mm.empty());
-  nlohmann::ordered_json json;
-  add_closed_loop(json, gain);
-  EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward"], "planned");
-  EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
+  const auto json = result::json_of(fields_of(gain));
+  EXPECT_EQ(json["gains"]["extended"]["feedforward"], "planned");
+  EXPECT_NE(json["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
 /// The model contains friction that relaxes within a few ticks. This friction has no inverse. The time steps
@@ -77,10 +74,9 @@ TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   EXPECT_EQ(gain.extended.part->left_out, std::vector<std::string>{"relaxing_friction"});
   EXPECT_FALSE(model::position_of<model::RelaxingFriction>(gain.extended.part->model));
   EXPECT_FALSE(gain.extended.refused.empty());
-  nlohmann::ordered_json json;
-  add_closed_loop(json, gain);
-  EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward_without"][0], "relaxing_friction");
-  EXPECT_NE(json["closed_loop"]["notes"].dump().find("omits relaxing_friction"), std::string::npos);
+  const auto json = result::json_of(fields_of(gain));
+  EXPECT_EQ(json["gains"]["extended"]["feedforward_without"][0], "relaxing_friction");
+  EXPECT_NE(json["notes"].dump().find("omits relaxing_friction"), std::string::npos);
 }
 
 TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {

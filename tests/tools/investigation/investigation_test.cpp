@@ -95,7 +95,7 @@ TEST_F(InvestigationTest, SettlesOnTheTruthAndRecordsEveryStep) {
   }
   EXPECT_EQ(minutes, result->spent_minutes);
   EXPECT_LE(minutes, result->budget_minutes);
-  const auto json = json_of(*result, "a test");
+  const auto json = result::json_of(fields_of(*result, "a test"));
   EXPECT_EQ(json["end"], "settled");
   EXPECT_NE(investigation_html(*result, "a test", "").find("step_1"), std::string::npos);
   EXPECT_EQ(json["steps"].size(), result->steps.size());
@@ -246,7 +246,7 @@ TEST_F(GaugeStepTest, AStraightSensorSettlesOnTheFinger) {
   EXPECT_GT(result->steps[0].minutes, 9 - 1e-9);
   EXPECT_EQ(result->spent_minutes, result->steps[0].minutes);
   EXPECT_TRUE(fs::exists(folder_ / "step_1" / "gauge.csv"));
-  const auto json = json_of(*result, "a test");
+  const auto json = result::json_of(fields_of(*result, "a test"));
   EXPECT_EQ(json["steps"][0]["experiment"]["waveform"], "gauge_check");
   EXPECT_TRUE(json["steps"][0]["experiment"]["predicted_separation_sigma"].is_null());
   EXPECT_EQ(json["steps"][0]["experiment"]["log"], (folder_ / "step_1" / "gauge.csv").string());
