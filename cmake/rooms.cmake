@@ -106,12 +106,11 @@ softgrip_room(sysid/changes
        sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
-  USES base sysid/limits sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
-       sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
+  USES base base/result sysid/limits sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual
+       sysid/diagnosis/causes sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
-  USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
-       sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict
-  LIBRARIES nlohmann_json::nlohmann_json)
+  USES base base/result model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
+       sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict)
 # Health analysis: recorded grips become indicators and their charts, and changed indicators become alarms.
 softgrip_room(sysid/health
   USES base base/result document model model/file control/elements sysid/limits sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes

@@ -81,7 +81,7 @@ Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const Diagn
           found->unexplained_percent,
           library::wrapped(found->recalibrated_model),
           library::wrapped(found->extended_model),
-          sysid::json_of(*found).dump(2) + "\n",
+          result::json_text(sysid::fields_of(*found)),
           sysid::diagnosis_page(report).to_html()};
 }
 

@@ -81,7 +81,11 @@ Table table_of(std::string caption, const Fields& columns, const std::vector<Fie
 Terms terms_of(const Fields& fields) {
   Terms terms;
   for (const Field& field : fields) {
-    if (!field.title.empty()) terms.emplace_back(field.title, field.value.text);
+    if (!field.title.empty()) {
+      terms.emplace_back(field.title, field.value.text);
+    } else if (const auto* inner = std::get_if<Fields>(&field.value.json)) {
+      for (auto& term : terms_of(*inner)) terms.push_back(std::move(term));
+    }
   }
   return terms;
 }

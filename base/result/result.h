@@ -110,12 +110,14 @@ template <std::ranges::range Items, class ToFields = decltype(fields_of_item)>
   return table_of(std::move(caption), columns, rows);
 }
 
-/// Returns the titles and the texts of the fields that have a title.
+/// Returns the titles and the texts of the fields that have a title. If the value of a field without a title
+/// is an object, the terms of the object are returned in its place.
 [[nodiscard]] Terms terms_of(const Fields& fields);
 
 /// Returns the value as JSON. A number that is not finite is null.
 [[nodiscard]] nlohmann::ordered_json json_of(const Value& value);
-/// Returns the fields as the text of a JSON file. Bytes that are not UTF-8 are replaced.
+/// Returns the fields as the text of a JSON file. If two fields have the same key, the second value is
+/// written at the position of the first one. Bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string json_text(const Fields& fields);
 
 }  // namespace softgrip::result

@@ -33,21 +33,16 @@ Fields fields_of_log(const Log& log) {
 }
 
 Fields fields_of_score(const Score& s, double span_mm) {
-  const auto number = [](double value) {
-    Value shown(value);
-    shown.text = or_dash(value);
-    return shown;
-  };
   const auto in_unit = [&](const char* title) { return model::in_unit(title, s.output_unit); };
   return {{"", "log", s.name},
           {"drive", "driven by", name_of(s.drive)},
           {"", "samples", std::ranges::count_if(s.error_mm, [](double e) { return std::isfinite(e); })},
-          {"", in_unit("span [mm]"), number(span_mm)},
-          {"rmse_mm", in_unit("RMSE [mm]"), number(s.rmse_mm)},
-          {"rmse_percent_of_span", "RMSE [% of span]", number(s.rmse_percent_of_span)},
-          {"first_cycle_rmse_mm", "RMSE of the first cycle", number(s.first_cycle_rmse_mm)},
-          {"settled_rmse_mm", in_unit("RMSE after the first cycle [mm]"), number(s.settled_rmse_mm)},
-          {"largest_error_mm", in_unit("largest error [mm]"), number(s.largest_error_mm)}};
+          {"", in_unit("span [mm]"), or_dash(span_mm)},
+          {"rmse_mm", in_unit("RMSE [mm]"), or_dash(s.rmse_mm)},
+          {"rmse_percent_of_span", "RMSE [% of span]", or_dash(s.rmse_percent_of_span)},
+          {"first_cycle_rmse_mm", "RMSE of the first cycle", or_dash(s.first_cycle_rmse_mm)},
+          {"settled_rmse_mm", in_unit("RMSE after the first cycle [mm]"), or_dash(s.settled_rmse_mm)},
+          {"largest_error_mm", in_unit("largest error [mm]"), or_dash(s.largest_error_mm)}};
 }
 
 }  // namespace
@@ -149,8 +144,9 @@ result::Table score_table(const std::vector<Record>& records, const std::vector<
   return result::table_of("", rows.empty() ? fields_of_score({}, 0) : rows.front(), rows);
 }
 
-std::string or_dash(double value, int digits) {
-  return std::isfinite(value) ? significant(value, digits) : "\xe2\x80\x93";
+Value or_dash(const std::optional<double>& value) {
+  const bool known = value && std::isfinite(*value);
+  return result::shown(value, known ? significant(*value, 3) : "\xe2\x80\x93", true);
 }
 
 }  // namespace softgrip::sysid

@@ -2,6 +2,7 @@
 // Reports a log and its prediction: their fields, the table of the scores, and the figures. identify.json,
 // validate.json and diagnosis.json use the same keys for these fields.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ void add_log_figures(Page& page, const Record& record, const Score& score);
 /// in % of the span, RMSE of the first cycle, RMSE of the settled cycles, and the largest error.
 [[nodiscard]] result::Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
 
-/// Returns a number as text, or a dash if the number is not finite.
-[[nodiscard]] std::string or_dash(double value, int digits = 3);
+/// Returns a number whose text has three significant digits. The text is an en dash if the number is absent
+/// or not finite.
+[[nodiscard]] result::Value or_dash(const std::optional<double>& value);
 
 }  // namespace softgrip::sysid

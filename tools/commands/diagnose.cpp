@@ -99,15 +99,9 @@ void print_cause(const sysid::NamedCause& named) {
 
 void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   std::printf("%s\n\n", sysid::verdict_sentence(d).c_str());
-  const auto print = [&](const char* what, double value, int digits) {
-    std::printf("  %-34s %s %s\n", what, significant(value, digits).c_str(),
-                std::string(model::name_of(d.extended_model.output_unit)).c_str());
-  };
-  print("measurement noise (1 sigma)", d.noise_mm, 3);
-  print("RMSE, given model", d.as_given_rmse_mm, 4);
-  print("held-out RMSE, refitted model", d.recalibrated_rmse_mm, 4);
-  print("held-out RMSE, extended model", d.extended_rmse_mm, 4);
-  std::printf("  %-34s %s %%\n\n", "unexplained share", fixed(d.unexplained_percent, 1).c_str());
+  for (const auto& [term, value] : result::terms_of(sysid::fields_of(d)))
+    std::printf("  %-34s %s\n", term.c_str(), value.c_str());
+  std::puts("");
   if (d.evidence && d.unexplained_recalibrated.present)
     std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
   for (const sysid::NamedCause& named : d.causes) print_cause(named);

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/files.h"
 #include "base/numbers.h"
 #include "base/result/result.h"
@@ -21,6 +19,8 @@
 namespace softgrip::tools {
 namespace {
 
+using result::Fields;
+
 constexpr const char* experiment_file = "next_experiment.yaml";
 /// Name of the file with the invertible part of an extended model. The file is written if the complete model
 /// has no inverse.
@@ -28,15 +28,18 @@ constexpr const char* feedforward_file = "feedforward_model.yaml";
 
 std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSource& source,
                           const Consequences& consequences) {
-  nlohmann::ordered_json json = sysid::json_of(diagnosis);
-  json["software"] = sysid::software_and_version();
-  json["call"] = source.call;
-  json["given"] = {{"name", source.given.name}, {"hash", model::model_hash(source.given)}};
-  json["model"] = {{"hash", model::model_hash(diagnosis.extended_model)}, {"file", "model.yaml"}};
-  json["logs"] = result::json_of(sysid::logs_value(source.logs));
-  add_experiment(json, consequences.experiment, experiment_file);
-  if (consequences.closed_loop) json["closed_loop"] = result::json_of(fields_of(*consequences.closed_loop));
-  return json.dump(2) + "\n";
+  Fields fields = sysid::fields_of(diagnosis);
+  fields.emplace_back("software", sysid::software_and_version());
+  fields.emplace_back("call", source.call);
+  fields.emplace_back("given",
+                      Fields{{"name", source.given.name}, {"hash", model::model_hash(source.given)}});
+  fields.emplace_back("model",
+                      Fields{{"hash", model::model_hash(diagnosis.extended_model)}, {"file", "model.yaml"}});
+  fields.emplace_back("logs", sysid::logs_value(source.logs));
+  for (result::Field& field : sysid::fields_of(consequences.experiment, experiment_file))
+    fields.push_back(std::move(field));
+  if (consequences.closed_loop) fields.emplace_back("closed_loop", fields_of(*consequences.closed_loop));
+  return result::json_text(fields);
 }
 
 }  // namespace

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/result/result.h"
 #include "sysid/diagnosis/experiments/waveform.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 
@@ -89,9 +88,8 @@ inline constexpr double separation_needed_sigma = 5;
 /// Returns the text of the sequence file for one waveform.
 [[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
-/// Adds the keys next_experiment, gauge_check and experiment_advice to the content of diagnosis.json. The
-/// value of gauge_check is null if no gauge check is proposed.
-void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,
-                    const std::string& file);
+/// Returns the fields next_experiment, gauge_check, experiments_judged and experiment_advice of
+/// diagnosis.json. next_experiment or gauge_check is null if the proposal does not contain it.
+[[nodiscard]] result::Fields fields_of(const NextExperiment& experiment, const std::string& file);
 
 }  // namespace softgrip::sysid

@@ -1,15 +1,12 @@
-#include <nlohmann/json.hpp>
+#include <algorithm>
 
 #include "base/numbers.h"
 #include "base/text.h"
 #include "sysid/diagnosis/experiments/experiment.h"
 
 namespace softgrip::sysid {
-namespace {
 
-using Json = nlohmann::ordered_json;
-
-}  // namespace
+using result::Fields, result::list_of, result::or_null, result::Value;
 
 std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel) {
   const JudgedWaveform& best = experiment.best.value();
@@ -30,35 +27,33 @@ std::string sequence_yaml(const Waveform& waveform, const std::string& channel) 
   return yaml;
 }
 
-void add_experiment(Json& json, const NextExperiment& experiment, const std::string& file) {
-  json["next_experiment"] = nullptr;
-  if (experiment.best) {
-    const JudgedWaveform& best = *experiment.best;
-    Json separations = Json::array();
-    for (const Separation& s : best.separations)
-      separations.push_back({{"pair", {s.one, s.other}}, {"sigma", s.sigma}});
-    json["next_experiment"] = {{"file", file},
-                               {"separates", experiment.separates},
-                               {"predicted_separation_sigma", experiment.predicted_separation_sigma},
-                               {"minutes", best.minutes},
-                               {"waveform", best.waveform.name},
-                               {"separations", std::move(separations)}};
-  }
-  json["gauge_check"] = nullptr;
-  if (const auto& check = experiment.gauge_check) {
-    json["gauge_check"] = {{"file", gauge_positions_file},
-                           {"separates", check->separates},
-                           {"readings", check->positions_mm.size()},
-                           {"minutes", check->minutes}};
-  }
-  Json menu = Json::array();
-  for (const JudgedWaveform& judged : experiment.menu) {
+Fields fields_of(const NextExperiment& experiment, const std::string& file) {
+  const auto of_pair = [](const Separation& s) -> Fields {
+    return {{"pair", Value::List{s.one, s.other}}, {"sigma", s.sigma}};
+  };
+  const auto of_best = [&](const JudgedWaveform& best) -> Fields {
+    return {{"file", file},
+            {"separates", experiment.separates},
+            {"predicted_separation_sigma", experiment.predicted_separation_sigma},
+            {"minutes", best.minutes},
+            {"waveform", best.waveform.name},
+            {"separations", list_of(best.separations, of_pair)}};
+  };
+  const auto of_check = [](const ProposedGaugeCheck& check) -> Fields {
+    return {{"file", gauge_positions_file},
+            {"separates", check.separates},
+            {"readings", check.positions_mm.size()},
+            {"minutes", check.minutes}};
+  };
+  const auto of_waveform = [](const JudgedWaveform& judged) -> Fields {
     double least = judged.separations.empty() ? 0 : judged.separations.front().sigma;
     for (const Separation& s : judged.separations) least = std::min(least, s.sigma);
-    menu.push_back({{"waveform", judged.waveform.name}, {"minutes", judged.minutes}, {"least_sigma", least}});
-  }
-  json["experiments_judged"] = std::move(menu);
-  json["experiment_advice"] = experiment.advice;
+    return {{"waveform", judged.waveform.name}, {"minutes", judged.minutes}, {"least_sigma", least}};
+  };
+  return {{"next_experiment", or_null(experiment.best, of_best)},
+          {"gauge_check", or_null(experiment.gauge_check, of_check)},
+          {"experiments_judged", list_of(experiment.menu, of_waveform)},
+          {"experiment_advice", experiment.advice}};
 }
 
 }  // namespace softgrip::sysid

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/result/result.h"
 #include "model/model.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/logs/log.h"
@@ -58,7 +57,9 @@ struct DiagnosisReport {
 /// Returns the report as an HTML page.
 [[nodiscard]] Page diagnosis_page(const DiagnosisReport& report);
 
-/// Returns the content of diagnosis.json. The key `next_experiment` is null until add_experiment() sets it.
-[[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
+/// Returns the content of diagnosis.json. The key `next_experiment` is null. The fields of a NextExperiment
+/// replace it if they follow these fields. Fields with a title are shown in the summary: the errors of the
+/// models.
+[[nodiscard]] result::Fields fields_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

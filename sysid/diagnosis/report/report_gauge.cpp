@@ -19,21 +19,29 @@ Colour colour_of(std::size_t hypothesis) {
   return colours[std::min<std::size_t>(hypothesis, 3)];
 }
 
-Table hypotheses_table(const GaugeCheck& check, model::OutputUnit unit) {
-  Table table;
-  table.header = {"hypothesis", model::in_unit("residual [mm]", unit),
-                  "log likelihood ratio to the best hypothesis", ""};
-  table.numeric = {false, true, true, false};
-  for (const GaugeFit& fit : check.fits) {
-    table.rows.push_back({title_of(fit), significant(fit.rms_mm, 3), significant(fit.behind, 3),
-                          fit.ruled_out  ? "ruled out"
-                          : fit.explains ? "explains the readings"
-                                         : "does not explain the gauge readings"});
-  }
+Table hypotheses_table(const GaugeEvidence& gauge) {
+  const auto of_fit = [&](const GaugeFit& fit) { return hypothesis_fields(fit, gauge.file.output_unit); };
+  Table table = result::table_of("", gauge.check.fits, of_fit);
+  table.header.back().clear();  // the sentences in the last column need no title
   return table;
 }
 
 }  // namespace
+
+result::Fields hypothesis_fields(const GaugeFit& fit, model::OutputUnit unit) {
+  return {{"id", "hypothesis", result::shown(fit.shape.id(), title_of(fit))},
+          {"rms_mm", model::in_unit("residual [mm]", unit), result::number(fit.rms_mm, 3)},
+          {"tolerance_mm", fit.tolerance_mm},
+          {"explains", fit.explains},
+          {"behind", "log likelihood ratio to the best hypothesis", result::number(fit.behind, 3)},
+          {"ruled_out", fit.ruled_out},
+          {"zero_mm", fit.zero_mm},
+          {"scale", fit.scale},
+          {"", "result",
+           fit.ruled_out  ? "ruled out"
+           : fit.explains ? "explains the readings"
+                          : "does not explain the gauge readings"}};
+}
 
 Chart gauge_chart(const GaugeEvidence& gauge) {
   const GaugeCheck& check = gauge.check;
@@ -78,7 +86,7 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
                    "), relative to the straight line that fits best. Dashed: hypotheses that are ruled out. "
                    "The figure uses only readings within the range of the logs, widened slightly.",
                {{gauge_chart(gauge)}}});
-  page.table(hypotheses_table(check, gauge.file.output_unit));
+  page.table(hypotheses_table(gauge));
   page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
                  significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
                  " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +

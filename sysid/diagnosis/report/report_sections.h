@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/result/result.h"
 #include "model/model.h"
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 #include "sysid/diagnosis/report/report.h"
@@ -83,6 +85,8 @@ void add_appendix(Page& page, const DiagnosisReport& report);
 /// The chart shows deviations from the straight line that fits the readings best.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
+/// Returns the fields of a hypothesis about the shape of the sensor that was tested with the gauge readings.
+[[nodiscard]] result::Fields hypothesis_fields(const GaugeFit& fit, model::OutputUnit unit);
 /// Adds the section about the gauge check to the page.
 void add_gauge_section(Page& page, const GaugeEvidence& gauge);
 
@@ -91,22 +95,33 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge);
 void add_reached(Page& page, const DiagnosisReport& report);
 
 /// Returns a percentage with its interval as text, for example "41.2 (33.6 to 46.6)".
-[[nodiscard]] std::string percent_range(const Spread& share);
+[[nodiscard]] std::string percent_range(const Spread& share, int decimals = 1);
+/// Returns a percentage with its interval. In JSON, the value is an object with the keys value and ci95. As
+/// text, the value is percent_range().
+[[nodiscard]] result::Value spread_value(const Spread& spread, int decimals = 1);
 /// Returns a table of the errors of the given, the refitted and the extended model. The errors are evaluated
 /// on all readings, on held-out blocks and on held-out logs.
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
 /// Returns a table with one row per condition. For each available model, a row states the p-value and the
 /// share of the residual variance that the condition explains.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
+/// Returns the fields of each candidate that was tested to replace the cause `chosen`. If `chosen` is
+/// nullptr, returns the fields of the candidates that were tested as an additional cause.
+[[nodiscard]] std::vector<result::Fields> candidate_rows(const Diagnosis& diagnosis,
+                                                         const NamedCause* chosen);
 /// Returns one table of candidates per named cause, and a last table. The candidates in the table of a cause
 /// were tested as its replacement. The candidates in the last table were tested as an additional cause.
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
+/// Returns the fields of the errors of the models on one run.
+[[nodiscard]] result::Fields run_fields(const Diagnosis& diagnosis, const RunError& run);
 /// Returns a table of the errors of the models on each run. For the error on a run, the model was fitted to
 /// the other runs.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);
 /// Returns the causes that the first part of the report shows. These are the named causes, and the partial
 /// explanations whose error reduction is significantly greater than zero.
 [[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);
+/// Returns the fields of a parameter: its value, its interval and the title of its cause.
+[[nodiscard]] result::Fields parameter_fields(std::string_view cause, const CauseParameter& parameter);
 /// Returns a table of the parameters of shown_causes() with their intervals. If a cause has more than `most`
 /// parameters, the table lists only the first parameters with an interval.
 [[nodiscard]] Table cause_parameter_table(const Diagnosis& diagnosis, std::size_t most);

@@ -1,6 +1,8 @@
 #include "sysid/diagnosis/report/report_sections.h"
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/numbers.h"
 #include "sysid/diagnosis/verdict/naming.h"
@@ -10,24 +12,20 @@ namespace softgrip::sysid {
 namespace {
 
 Table parts_table(const ValveFindings& in_valve) {
-  Table table;
-  table.caption = "Causes between command and measured pressure";
-  table.header = {"cause",         "parameter", "value",
-                  "95 % interval", "unit",      "reduction of the held-out pressure error [%]"};
-  table.numeric = {false, false, true, true, false, true};
+  const auto row_of = [](std::string_view title, const CauseParameter& p, const Spread& gain) {
+    result::Fields row = parameter_fields(title, p);
+    row.emplace_back("", "reduction of the held-out pressure error [%]", spread_value(gain, 0));
+    return row;
+  };
+  std::vector<result::Fields> rows;
   for (const NamedCause& named : in_valve.named) {
-    const Spread& gain = named.heldout_gain_percent;
     std::string title(named.cause.title);
     for (const Cause& alternative : named.alternatives)
       title += " or " + alternative_title(alternative, in_valve.named);
-    for (const CauseParameter& p : named.parameters) {
-      table.rows.push_back(
-          {title, p.name, significant(p.value, 4),
-           p.has_interval ? text_of(p.ci95, p.value, " to ") : "not fitted", p.unit,
-           fixed(gain.value, 0) + " (" + fixed(gain.lower, 0) + " to " + fixed(gain.upper, 0) + ")"});
-    }
+    for (const CauseParameter& p : named.parameters)
+      rows.push_back(row_of(title, p, named.heldout_gain_percent));
   }
-  return table;
+  return result::table_of("Causes between command and measured pressure", row_of("", {}, {}), rows);
 }
 
 }  // namespace

@@ -92,6 +92,16 @@ TEST(Result, TermsAreTheTitlesAndTheTexts) {
             (Terms{{"run", "a"}, {"error", "2 mm"}, {"state", "healthy"}}));
 }
 
+TEST(Result, TermsOfAnObjectWithoutATitleStandInItsPlace) {
+  const Fields inner{{"b", "second", 2}, {"c", 3}};
+  EXPECT_EQ(terms_of({{"a", "first", 1}, {"inner", inner}, {"d", "object", shown(inner, "one")}}),
+            (Terms{{"first", "1"}, {"second", "2"}, {"object", "one"}}));
+}
+
+TEST(Result, ALaterFieldReplacesTheValueOfItsKey) {
+  EXPECT_EQ(json_of(Fields{{"a", Value()}, {"b", 2}, {"a", 1}}).dump(), R"({"a":1,"b":2})");
+}
+
 TEST(Result, ListsAndObjectsAreMadeOfContainers) {
   EXPECT_EQ(json_of(list_of(std::vector<Grip>{{"a", 1, true}}, fields_of)).dump(),
             R"([{"run":"a","error_mm":1.0,"healthy":true}])");

@@ -144,9 +144,7 @@ TEST(Experiment, NothingIsProposedWithoutAlternatives) {
   Diagnosis d;
   d.verdict = Verdict::cause_found;
   EXPECT_FALSE(design_experiment(d, {}).best);
-  nlohmann::ordered_json json{{"next_experiment", 1}};
-  add_experiment(json, {}, "x.yaml");
-  EXPECT_TRUE(json["next_experiment"].is_null());
+  EXPECT_TRUE(result::json_of(fields_of(NextExperiment(), "x.yaml"))["next_experiment"].is_null());
 }
 
 TEST(Experiment, WhitenedNoiseIsWhiteAndOfUnitVariance) {
@@ -191,8 +189,7 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   const double seen_sigma = std::sqrt(std::max(0.0, misfit("slow_creep") - misfit("stress_softening")));
   EXPECT_GT(seen_sigma, 0.6 * next.predicted_separation_sigma);
 
-  nlohmann::ordered_json json;
-  add_experiment(json, next, "next_experiment.yaml");
+  const auto json = result::json_of(fields_of(next, "next_experiment.yaml"));
   EXPECT_EQ(json["next_experiment"]["file"], "next_experiment.yaml");
   EXPECT_EQ(json["next_experiment"]["separates"].size(), 2U);
   EXPECT_EQ(json["next_experiment"]["predicted_separation_sigma"], next.predicted_separation_sigma);

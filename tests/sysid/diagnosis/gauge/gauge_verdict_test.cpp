@@ -94,10 +94,11 @@ void expect_check_proposed(const Diagnosis& before) {
   EXPECT_NEAR(next.gauge_check->minutes, static_cast<double>(next.gauge_check->positions_mm.size()) / 3,
               1e-9);
   EXPECT_NE(next.advice.front().find("--gauge"), std::string::npos) << next.advice.front();
-  nlohmann::ordered_json json = json_of(before);
-  ASSERT_TRUE(json.contains("gauge"));
-  EXPECT_TRUE(json["gauge"].is_null());
-  add_experiment(json, next, "next_experiment.yaml");
+  result::Fields fields = fields_of(before);
+  ASSERT_TRUE(result::json_of(fields).contains("gauge"));
+  EXPECT_TRUE(result::json_of(fields)["gauge"].is_null());
+  for (result::Field& field : fields_of(next, "next_experiment.yaml")) fields.push_back(field);
+  const auto json = result::json_of(fields);
   EXPECT_TRUE(json["next_experiment"].is_null());
   EXPECT_EQ(json["gauge_check"]["file"], "gauge_positions.csv");
 }
@@ -111,7 +112,7 @@ TEST(GaugeVerdict, ABentScaleIsFoundBentAndNamedByTheCheckThatIsProposed) {
   expect_found(d, "sensor_nonlinearity");
   EXPECT_NEAR(value_of(d.causes[0], "bow_mm"), 0.6, 0.25);
   EXPECT_EQ(d.gauge->ruled_out, (std::vector<std::string>{"stiffening"}));
-  expect_gauge(json_of(d)["gauge"], gauge);
+  expect_gauge(result::json_of(fields_of(d))["gauge"], gauge);
 }
 
 TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {

@@ -54,11 +54,11 @@ TEST(ReportValve, IsNoTableWhereNothingIsLacking) {
 TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
   Diagnosis d;
   d.unexplained_recalibrated.excess_mm = 0.5;
-  EXPECT_TRUE(json_of(d).at("stick_slip").is_null());
+  EXPECT_TRUE(result::json_of(fields_of(d)).at("stick_slip").is_null());
   d.stick_slip.emplace().jumps = 7;
   d.evidence.emplace().recalibrated.structure_mm = 0.25;
   d.evidence->recalibrated.memory_s = 1.5;
-  const auto json = json_of(d);
+  const auto json = result::json_of(fields_of(d));
   EXPECT_EQ(json.at("stick_slip").at("jumps"), 7);
   EXPECT_EQ(json.at("staircase"), json.at("stick_slip"));
   EXPECT_EQ(json.at("unexplained_rms_mm").at("recalibrated"), 0.5);
@@ -73,10 +73,10 @@ TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
 TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
   Diagnosis d;
   d.verdict = Verdict::adequate;
-  EXPECT_EQ(json_of(d)["verdict"], "adequate");
-  EXPECT_TRUE(json_of(d)["valve"].is_null());
+  EXPECT_EQ(result::json_of(fields_of(d))["verdict"], "adequate");
+  EXPECT_TRUE(result::json_of(fields_of(d))["valve"].is_null());
   d.in_valve = dead_band_found();
-  const auto json = json_of(d);
+  const auto json = result::json_of(fields_of(d));
   EXPECT_EQ(json["verdict"], "cause_found");
   ASSERT_EQ(json["causes"].size(), 1U);
   EXPECT_EQ(json["alternatives"].size(), 1U);
@@ -87,7 +87,7 @@ TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
   EXPECT_NE(verdict_sentence(d).find("valve dead band (band_kpa 1.25)"), std::string::npos)
       << verdict_sentence(d);
   d.verdict = Verdict::unexplained;
-  EXPECT_EQ(json_of(d)["verdict"], "partly_explained");
+  EXPECT_EQ(result::json_of(fields_of(d))["verdict"], "partly_explained");
 }
 
 TEST(DiagnosisJson, ALeakThatMayBeAScaleIsAmbiguousWithTheScaleForItsAlternative) {
@@ -95,7 +95,7 @@ TEST(DiagnosisJson, ALeakThatMayBeAScaleIsAmbiguousWithTheScaleForItsAlternative
   d.verdict = Verdict::recalibrate;
   d.in_valve = dead_band_found();
   d.in_valve->named.front().alternatives = {*find_cause("pressure_scale")};
-  const auto json = json_of(d);
+  const auto json = result::json_of(fields_of(d));
   EXPECT_EQ(json["verdict"], "ambiguous");
   ASSERT_EQ(json["alternatives"][0].size(), 1U);
   EXPECT_EQ(json["alternatives"][0][0], "pressure_scale");
