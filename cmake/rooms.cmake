@@ -110,7 +110,7 @@ softgrip_room(sysid/diagnosis/experiments
        sysid/diagnosis/causes sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
   USES base base/result model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
-       sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict)
+       sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict sysid/diagnosis/experiments)
 # Health analysis: recorded grips become indicators and their charts, and changed indicators become alarms.
 softgrip_room(sysid/health
   USES base base/result document model model/file control/elements sysid/limits sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes

@@ -68,7 +68,7 @@ Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const Diagn
   if (!found) throw Refused(found.error());
   std::vector<Cause> causes;
   for (const sysid::NamedCause& named : found->causes) causes.push_back(public_cause(named));
-  const sysid::DiagnosisReport report{*found, checked, model.parts().value, options.seed, {}, {}, {}};
+  const sysid::DiagnosisReport report{*found, checked, model.parts().value, options.seed, {}, {}};
   return {sysid::name_of(sysid::whole_verdict(*found)),
           sysid::verdict_sentence(*found),
           found->warnings,

@@ -143,14 +143,6 @@ ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std
   return wanted;
 }
 
-/// Returns the next experiment for the report, or nullopt if the diagnosis proposes none.
-std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences& consequences) {
-  const sysid::NextExperiment& next = consequences.experiment;
-  if (!next.best) return std::nullopt;
-  return sysid::ProposedExperiment{"next_experiment.yaml", next.separates, next.predicted_separation_sigma,
-                                   next.best->minutes, next.best->waveform.about};
-}
-
 /// Returns the curves of the closed loop that the report shows. A model without feedforward has no curve.
 std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& consequences) {
   if (!consequences.closed_loop) return std::nullopt;
@@ -221,8 +213,7 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
                                       *logs,
                                       *model,
                                       options.diagnosis.seed,
-                                      proposed_experiment(consequences),
-                                      consequences.experiment.advice,
+                                      consequences.experiment,
                                       closed_loop_curves(consequences)};
   const sysid::Page page = sysid::diagnosis_page(report);
   if (const auto written = write_report(options.out, {}, page, options.figures); !written)

@@ -21,7 +21,6 @@ namespace {
 
 using result::Fields;
 
-constexpr const char* experiment_file = "next_experiment.yaml";
 /// Name of the file with the invertible part of an extended model. The file is written if the complete model
 /// has no inverse.
 constexpr const char* feedforward_file = "feedforward_model.yaml";
@@ -36,8 +35,7 @@ std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSour
   fields.emplace_back("model",
                       Fields{{"hash", model::model_hash(diagnosis.extended_model)}, {"file", "model.yaml"}});
   fields.emplace_back("logs", sysid::logs_value(source.logs));
-  for (result::Field& field : sysid::fields_of(consequences.experiment, experiment_file))
-    fields.push_back(std::move(field));
+  for (result::Field& field : sysid::fields_of(consequences.experiment)) fields.push_back(std::move(field));
   if (consequences.closed_loop) fields.emplace_back("closed_loop", fields_of(*consequences.closed_loop));
   return result::json_text(fields);
 }
@@ -66,7 +64,7 @@ Consequences consequences_of(const sysid::Diagnosis& diagnosis, const Consequenc
 }
 
 std::vector<std::string> diagnosis_files() {
-  return {"diagnosis.json", "model.yaml", experiment_file, feedforward_file};
+  return {"diagnosis.json", "model.yaml", sysid::experiment_file, feedforward_file};
 }
 
 tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
@@ -80,9 +78,9 @@ tl::expected<std::string, std::string> write_diagnosis_folder(const std::string&
       {"model.yaml", model::to_yaml(diagnosis.extended_model)}};
   std::error_code ignored;
   if (consequences.experiment.best) {
-    files.emplace_back(experiment_file, sysid::sequence_yaml(consequences.experiment, channel));
+    files.emplace_back(sysid::experiment_file, sysid::sequence_yaml(consequences.experiment, channel));
   } else {
-    std::filesystem::remove(out / experiment_file, ignored);
+    std::filesystem::remove(out / sysid::experiment_file, ignored);
   }
   if (consequences.closed_loop && consequences.closed_loop->extended.part) {
     files.emplace_back(feedforward_file, model::to_yaml(consequences.closed_loop->extended.part->model));
@@ -109,7 +107,8 @@ std::string text_of(const Consequences& consequences, const std::string& folder)
     text += "next experiment: " + next.best->waveform.name + ", " + significant(next.best->minutes, 2) +
             " minutes, separates " + with_commas(next.separates) + " by " +
             significant(next.predicted_separation_sigma, 3) +
-            " standard deviations: " + (std::filesystem::path(folder) / experiment_file).string() + "\n";
+            " standard deviations: " + (std::filesystem::path(folder) / sysid::experiment_file).string() +
+            "\n";
   }
   for (const std::string& sentence : next.advice) text += "to separate the causes: " + sentence + "\n";
   if (consequences.closed_loop) {

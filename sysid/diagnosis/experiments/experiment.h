@@ -71,6 +71,8 @@ struct NextExperiment {
   std::vector<std::string> advice;
 };
 
+/// Name of the sequence file of the proposed experiment, in the folder of diagnosis.json.
+inline constexpr const char* experiment_file = "next_experiment.yaml";
 /// Name of the gauge file with empty readings. If a gauge check is proposed, the file is written to the
 /// folder of diagnosis.json.
 inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
@@ -90,6 +92,6 @@ inline constexpr double separation_needed_sigma = 5;
 
 /// Returns the fields next_experiment, gauge_check, experiments_judged and experiment_advice of
 /// diagnosis.json. next_experiment or gauge_check is null if the proposal does not contain it.
-[[nodiscard]] result::Fields fields_of(const NextExperiment& experiment, const std::string& file);
+[[nodiscard]] result::Fields fields_of(const NextExperiment& experiment);
 
 }  // namespace softgrip::sysid

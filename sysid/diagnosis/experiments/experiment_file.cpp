@@ -27,12 +27,12 @@ std::string sequence_yaml(const Waveform& waveform, const std::string& channel) 
   return yaml;
 }
 
-Fields fields_of(const NextExperiment& experiment, const std::string& file) {
+Fields fields_of(const NextExperiment& experiment) {
   const auto of_pair = [](const Separation& s) -> Fields {
     return {{"pair", Value::List{s.one, s.other}}, {"sigma", s.sigma}};
   };
   const auto of_best = [&](const JudgedWaveform& best) -> Fields {
-    return {{"file", file},
+    return {{"file", experiment_file},
             {"separates", experiment.separates},
             {"predicted_separation_sigma", experiment.predicted_separation_sigma},
             {"minutes", best.minutes},

@@ -49,19 +49,20 @@ Terms looked_at(const DiagnosisReport& report) {
 }
 
 void add_next(Page& page, const DiagnosisReport& report) {
-  if (report.advice.empty() && !report.next_experiment) return;
+  const NextExperiment& next = report.experiment;
+  if (next.advice.empty() && !next.best) return;
   page.section("Recommended measurements");
-  page.list(report.advice);
-  if (!report.next_experiment) return;
-  const ProposedExperiment& next = *report.next_experiment;
-  page.paragraph("Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") +
-                 "This experiment separates " + with_commas(next.separates) +
+  page.list(next.advice);
+  if (!next.best) return;
+  const std::string& about = next.best->waveform.about;
+  page.paragraph("Next experiment: " + (about.empty() ? "" : about + ". ") + "This experiment separates " +
+                 with_commas(next.separates) +
                  ". Even if each of these explanations is refitted to the response of the other explanation, "
                  "their responses differ by " +
                  significant(next.predicted_separation_sigma, 3) +
                  " standard deviations of the noise. The experiment takes " +
-                 significant(next.rig_minutes, 2) +
-                 " minutes of motion on the rig; sequence file: " + next.file + ".");
+                 significant(next.best->minutes, 2) +
+                 " minutes of motion on the rig; sequence file: " + experiment_file + ".");
 }
 
 void add_found(Page& page, const DiagnosisReport& report) {

@@ -10,20 +10,12 @@
 
 #include "base/result/result.h"
 #include "model/model.h"
+#include "sysid/diagnosis/experiments/experiment.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/logs/log.h"
 #include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
-
-/// A proposed experiment. It separates causes that explain the logs equally well.
-struct ProposedExperiment {
-  std::string file;                    ///< name of the sequence file in the folder of the report
-  std::vector<std::string> separates;  ///< ids of the causes that the experiment separates
-  double predicted_separation_sigma = 0;
-  double rig_minutes = 0;
-  std::string waveform;  ///< description of the waveform
-};
 
 /// Simulated tracking of a reference trajectory with several control schemes. Each scheme uses a different
 /// model for its feedforward, or no model.
@@ -49,8 +41,7 @@ struct DiagnosisReport {
   const std::vector<Log>& logs;
   const model::Model& given;
   std::uint64_t seed = 1;
-  std::optional<ProposedExperiment> next_experiment;
-  std::vector<std::string> advice;  ///< proposed measurements; each element is one sentence
+  NextExperiment experiment;  ///< proposal for the next measurements; empty: none is proposed
   std::optional<ClosedLoopCurves> closed_loop;
 };
 

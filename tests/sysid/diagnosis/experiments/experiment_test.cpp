@@ -144,7 +144,7 @@ TEST(Experiment, NothingIsProposedWithoutAlternatives) {
   Diagnosis d;
   d.verdict = Verdict::cause_found;
   EXPECT_FALSE(design_experiment(d, {}).best);
-  EXPECT_TRUE(result::json_of(fields_of(NextExperiment(), "x.yaml"))["next_experiment"].is_null());
+  EXPECT_TRUE(result::json_of(fields_of(NextExperiment()))["next_experiment"].is_null());
 }
 
 TEST(Experiment, WhitenedNoiseIsWhiteAndOfUnitVariance) {
@@ -189,7 +189,7 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   const double seen_sigma = std::sqrt(std::max(0.0, misfit("slow_creep") - misfit("stress_softening")));
   EXPECT_GT(seen_sigma, 0.6 * next.predicted_separation_sigma);
 
-  const auto json = result::json_of(fields_of(next, "next_experiment.yaml"));
+  const auto json = result::json_of(fields_of(next));
   EXPECT_EQ(json["next_experiment"]["file"], "next_experiment.yaml");
   EXPECT_EQ(json["next_experiment"]["separates"].size(), 2U);
   EXPECT_EQ(json["next_experiment"]["predicted_separation_sigma"], next.predicted_separation_sigma);

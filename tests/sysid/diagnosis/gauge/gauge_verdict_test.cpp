@@ -97,7 +97,7 @@ void expect_check_proposed(const Diagnosis& before) {
   result::Fields fields = fields_of(before);
   ASSERT_TRUE(result::json_of(fields).contains("gauge"));
   EXPECT_TRUE(result::json_of(fields)["gauge"].is_null());
-  for (result::Field& field : fields_of(next, "next_experiment.yaml")) fields.push_back(field);
+  for (result::Field& field : fields_of(next)) fields.push_back(field);
   const auto json = result::json_of(fields);
   EXPECT_TRUE(json["next_experiment"].is_null());
   EXPECT_EQ(json["gauge_check"]["file"], "gauge_positions.csv");

@@ -100,7 +100,7 @@ class ReportTest : public ::testing::Test {
   Diagnosis diagnosis = a_diagnosis(given);
   std::vector<Log> logs;
 
-  [[nodiscard]] Page page() const { return diagnosis_page({diagnosis, logs, given, 1, {}, {}, {}}); }
+  [[nodiscard]] Page page() const { return diagnosis_page({diagnosis, logs, given, 1, {}, {}}); }
 };
 
 TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
@@ -232,13 +232,13 @@ TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
   ClosedLoopCurves curves{
       "13 ± 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"the extended model has no usable feedforward"}};
   curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}};
-  const std::string alone = diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html();
+  const std::string alone = diagnosis_page({diagnosis, logs, given, 1, {}, curves}).to_html();
   EXPECT_EQ(alone.find("In closed loop, "), std::string::npos);
   EXPECT_NE(alone.find("the extended model has no usable feedforward"), std::string::npos);
   EXPECT_NE(alone.find("No controller with a model was simulated in closed loop (13 ± 7 mm)"),
             std::string::npos);
   curves.schemes.push_back({"extended model", 0.02, {13, 20, 13.01}});
-  EXPECT_NE(diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html().find("In closed loop, "),
+  EXPECT_NE(diagnosis_page({diagnosis, logs, given, 1, {}, curves}).to_html().find("In closed loop, "),
             std::string::npos);
 }
 
