@@ -70,6 +70,12 @@ TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
   EXPECT_EQ(residual.at("memory_s"), 1.5);
 }
 
+TEST(DiagnosisJson, IsWrittenIfThePathOfALogIsNotUtf8) {
+  Diagnosis d;
+  d.runs = {{"sp2\xff", 0.1, 0.1, 0.1}};
+  EXPECT_NE(result::json_text(fields_of(d)).find("\"run\": \"sp2\xef\xbf\xbd\""), std::string::npos);
+}
+
 TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
   Diagnosis d;
   d.verdict = Verdict::adequate;
