@@ -160,8 +160,8 @@ void RigController::report_unsettled(std::uint32_t channels) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const Channel& channel = channels_[i];
     if ((channels & channel_bit(i)) != 0 && channel.unsettled != UnsettledReason::none)
-      output_.events.add_of_channel(i, Event::Kind::not_at_rest, channel.unsettled, 0,
-                                    channel.controller.offset_mm());
+      output_.events.add_of_channel<Event::Kind::not_at_rest>(i, channel.unsettled, 0,
+                                                              channel.controller.offset_mm());
   }
 }
 
@@ -234,29 +234,36 @@ void RigController::tell_limits(std::size_t index, double time_s) noexcept {
   const std::optional<BindingLimit> now = channels_[index].limits.observe(time_s, seen.bound_by);
   if (!now) return;
   seen.limit = *now;
-  const bool binds = *now != BindingLimit::none;
-  output_.events.add_of_channel(index, binds ? Event::Kind::limit_binds : Event::Kind::limit_free,
-                                binds ? *now : before, 0, seen.command_kpa);
+  if (*now != BindingLimit::none) {
+    output_.events.add_of_channel<Event::Kind::limit_binds>(index, *now, 0, seen.command_kpa);
+  } else {
+    output_.events.add_of_channel<Event::Kind::limit_free>(index, before, 0, seen.command_kpa);
+  }
 }
 
 void RigController::tell_changes(std::size_t index) noexcept {
+  EventList& events = output_.events;
   const ChannelOutput& seen = output_.channels[index];
   const bool valid = seen.validity == model::Validity::valid;
   // Before the first response of the board, a channel has no reading, so no event about a reading is added.
   if (seen.validity != model::Validity::none_yet && valid != channels_[index].valid_before) {
-    output_.events.add_of_channel(index, valid ? Event::Kind::reading_valid : Event::Kind::reading_invalid,
-                                  seen.validity, 0, seen.age_s);
+    if (valid) {
+      events.add_of_channel<Event::Kind::reading_valid>(index, seen.validity, 0, seen.age_s);
+    } else {
+      events.add_of_channel<Event::Kind::reading_invalid>(index, seen.validity, 0, seen.age_s);
+    }
     channels_[index].valid_before = valid;
   }
   if (seen.unsteady != channels_[index].unsteady_before) {
     channels_[index].unsteady_before = seen.unsteady;
-    output_.events.add_of_channel(index,
-                                  seen.unsteady ? Event::Kind::reading_unsteady : Event::Kind::reading_steady,
-                                  0, 0, seen.jump_mm);
+    if (seen.unsteady) {
+      events.add_of_channel<Event::Kind::reading_unsteady>(index, {}, 0, seen.jump_mm);
+    } else {
+      events.add_of_channel<Event::Kind::reading_steady>(index, {}, 0, seen.jump_mm);
+    }
   }
   if (seen.health_changed) {
-    output_.events.add_of_channel(index, Event::Kind::model_health_changed, seen.health, 0,
-                                  seen.health_rms_mm);
+    events.add_of_channel<Event::Kind::model_health_changed>(index, seen.health, 0, seen.health_rms_mm);
   }
 }
 

@@ -29,7 +29,7 @@ void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<co
   done_ = 0;
   refused_ = 0;
   for_each_of_step([&](std::size_t i) { channels_[i].begin(now().step, now().plan_of(i), time_s, seen[i]); });
-  events.add(Event::Kind::step_started, index, 0, attempts_);
+  events.add<Event::Kind::step_started>(index, 0, attempts_);
 }
 
 SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const ChannelOutput> seen,
@@ -92,7 +92,7 @@ bool SequencePlayer::take_contact(std::size_t channel, const ChannelOutput& seen
                                   EventList& events) noexcept {
   const std::optional<OnContact> met = channels_[channel].take_contact();
   if (!met) return false;
-  events.add_of_channel(channel, Event::Kind::contact, *met, 0, seen.displacement_mm);
+  events.add_of_channel<Event::Kind::contact>(channel, *met, 0, seen.displacement_mm);
   return met == OnContact::grip && now().grip_step < sequence_->steps.size();
 }
 
@@ -154,8 +154,8 @@ void SequencePlayer::answer(std::size_t channel, GripResult result, GripEvidence
 
 void SequencePlayer::tell(std::size_t channel, EventList& events) const noexcept {
   const ChannelPlayer& player = channels_[channel];
-  events.add(Event{Event::Kind::grip_result, static_cast<std::uint8_t>(channel),
-                   static_cast<std::uint16_t>(player.result()), 0, player.shortfall_mm(), player.evidence()});
+  events.add_of_channel<Event::Kind::grip_result>(channel, {player.result(), player.evidence()}, 0,
+                                                  player.shortfall_mm());
 }
 
 void SequencePlayer::lose(std::size_t channel, EventList& events) noexcept {
@@ -227,7 +227,7 @@ void SequencePlayer::acknowledge(std::uint32_t request, EventList& events) noexc
     const GripResult result = channels_[i].result();
     if (result != GripResult::none && result != GripResult::holding) {
       channels_[i].answer(GripResult::none, GripEvidence::none);
-      events.add_of_channel(i, Event::Kind::grip_result, GripResult::none, request);
+      events.add_of_channel<Event::Kind::grip_result>(i, {}, request);
     }
   }
 }

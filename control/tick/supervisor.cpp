@@ -5,6 +5,12 @@
 
 namespace softgrip::control {
 
+namespace {
+void refuse(RefusalCode code, const Request& request, EventList& events) noexcept {
+  events.add<Event::Kind::request_refused>({code, FaultCode::none}, request.id);
+}
+}  // namespace
+
 Supervisor::Supervisor(const RigSettings& settings)
     : safety_(settings.safety), all_((1U << settings.channels.size()) - 1), rig_(rig_key(settings)) {
   venting_ = all_;
@@ -12,7 +18,7 @@ Supervisor::Supervisor(const RigSettings& settings)
 
 void Supervisor::go(State state, std::uint32_t request, EventList& events) noexcept {
   state_ = state;
-  events.add(Event::Kind::state_changed, state, request);
+  events.add<Event::Kind::state_changed>(state, request);
 }
 
 SupervisorOutputs Supervisor::tick(const TickInput& input, const SupervisorInputs& inputs,
@@ -39,8 +45,7 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
   }
   if (state_ == State::faulted && (told_ & place) != 0) return;
   told_ |= place;
-  events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
-                   fault.value, GripEvidence::none});
+  events.add_of_channel<Event::Kind::fault_latched>(fault.channel, fault.code, 0, fault.value);
   // After the first fault, the player is idle. Therefore, the safe action of later faults also depends on the
   // phase in which the first fault occurred.
   const bool first = state_ != State::faulted;
@@ -125,13 +130,13 @@ RefusalCode Supervisor::refusal_of_start(const TickInput& input,
 bool Supervisor::refuses_start(const TickInput& input, const SupervisorInputs& inputs,
                                EventList& events) const noexcept {
   const RefusalCode refusal = refusal_of_start(input, inputs);
-  if (refusal != RefusalCode::none) events.add(Event::Kind::request_refused, refusal, input.request.id);
+  if (refusal != RefusalCode::none) refuse(refusal, input.request, events);
   return refusal != RefusalCode::none;
 }
 
 void Supervisor::answer_check(const TickInput& input, const SupervisorInputs& inputs,
                               EventList& events) const noexcept {
-  if (!refuses_start(input, inputs, events)) events.add(Event::Kind::start_checked, 0, input.request.id);
+  if (!refuses_start(input, inputs, events)) events.add<Event::Kind::start_checked>({}, input.request.id);
 }
 
 void Supervisor::answer_start(const TickInput& input, const SupervisorInputs& inputs,
@@ -141,7 +146,7 @@ void Supervisor::answer_start(const TickInput& input, const SupervisorInputs& in
   sequence_ = request.sequence;
   start_request_ = request.id;
   outputs.seek_rest = true;
-  events.add(Event::Kind::sequence_started, 0, request.id);
+  events.add<Event::Kind::sequence_started>({}, request.id);
   go(State::resynchronising, request.id, events);
 }
 
@@ -152,8 +157,7 @@ void Supervisor::answer_stop(const SupervisorInputs& inputs, const Request& requ
   } else if (playing()) {
     stop(inputs, request.id, outputs, events);
   } else {
-    events.add(Event::Kind::request_refused,
-               state_ == State::faulted ? RefusalCode::faulted : RefusalCode::nothing_to_stop, request.id);
+    refuse(state_ == State::faulted ? RefusalCode::faulted : RefusalCode::nothing_to_stop, request, events);
   }
 }
 
@@ -166,7 +170,7 @@ void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& r
     return;
   }
   withdraw(request);
-  events.add(Event::Kind::request_refused, RefusalCode::named_start_not_running, request.id);
+  refuse(RefusalCode::named_start_not_running, request, events);
 }
 
 /// Remembers the start that a stop request names, if this start may still be in the queue of the loop. When
@@ -187,7 +191,7 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
 void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {
-    events.add(Event::Kind::state_changed, state_, request.id);
+    events.add<Event::Kind::state_changed>(state_, request.id);
     return;
   }
   if (playing()) {
@@ -201,18 +205,17 @@ void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs,
 /// sequence runs, the pressurised channels go to the rest pressure at the slew limit.
 void Supervisor::answer_release(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
-  const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };
   if (state_ == State::running) {
     outputs.release = true;
-    events.add(Event::Kind::release_asked, 0, request.id);
+    events.add<Event::Kind::release_asked>({}, request.id);
   } else if (state_ == State::faulted) {
-    refuse(RefusalCode::faulted);
+    refuse(RefusalCode::faulted, request, events);
   } else if (state_ == State::starting) {
-    refuse(RefusalCode::no_valid_reading);
+    refuse(RefusalCode::no_valid_reading, request, events);
   } else if (state_ == State::resynchronising || inputs.at_rest != all_) {
     answer_vent(request, outputs, events);
   } else {
-    refuse(RefusalCode::nothing_to_release);
+    refuse(RefusalCode::nothing_to_release, request, events);
   }
 }
 
@@ -221,12 +224,12 @@ void Supervisor::answer_acknowledge(const SupervisorInputs& inputs, const Reques
   if (state_ == State::faulted) {
     const Fault& cause = inputs.cause;
     if (cause.code != FaultCode::none) {
-      events.add_of_channel(cause.channel, Event::Kind::request_refused, RefusalCode::cause_persists,
-                            request.id, static_cast<double>(cause.code));
+      events.add_of_channel<Event::Kind::request_refused>(
+          cause.channel, {RefusalCode::cause_persists, cause.code}, request.id);
       return;
     }
-    events.add_of_channel(first_fault_.channel, Event::Kind::fault_acknowledged, first_fault_.code,
-                          request.id);
+    events.add_of_channel<Event::Kind::fault_acknowledged>(first_fault_.channel, first_fault_.code,
+                                                           request.id);
     first_fault_ = {};
     told_ = 0;
     outputs.acknowledged_by = request.id;
@@ -234,7 +237,7 @@ void Supervisor::answer_acknowledge(const SupervisorInputs& inputs, const Reques
   } else if (inputs.answers) {
     outputs.acknowledged_by = request.id;
   } else {
-    events.add(Event::Kind::request_refused, RefusalCode::nothing_to_acknowledge, request.id);
+    refuse(RefusalCode::nothing_to_acknowledge, request, events);
   }
 }
 
@@ -258,7 +261,7 @@ void Supervisor::sequence_ended(SequenceEnd end, OnFail action, Phase phase, Eve
 }
 
 void Supervisor::end_sequence(SequenceEnd end, EventList& events) noexcept {
-  if (playing()) events.add(Event::Kind::sequence_finished, end, start_request_);
+  if (playing()) events.add<Event::Kind::sequence_finished>(end, start_request_);
   sequence_ = nullptr;
 }
 

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include "control/elements/fault.h"
 #include "control/elements/grip_result.h"
@@ -17,7 +19,8 @@
 
 namespace softgrip::control {
 
-struct PreparedSequence;  // control/tick/sequence.h defines this struct
+struct PreparedSequence;              // control/tick/sequence.h defines this struct
+enum class OnContact : std::uint8_t;  // control/tick/sequence.h defines this enum
 
 /// States of the supervisor. Status and recordings use the names of these states.
 enum class State : std::uint8_t {
@@ -161,6 +164,21 @@ struct Fault {
                      ///< number of cycles
 };
 
+/// The new grip result of a channel, and the evidence on which it is based.
+struct GripAnswer {
+  GripResult result = GripResult::none;
+  GripEvidence evidence = GripEvidence::none;
+  bool operator==(const GripAnswer&) const = default;
+};
+
+/// The reason why a request was refused. For RefusalCode::cause_persists, `cause` is the fault condition that
+/// is still present.
+struct RequestRefusal {
+  RefusalCode code = RefusalCode::none;
+  FaultCode cause = FaultCode::none;
+  bool operator==(const RequestRefusal&) const = default;
+};
+
 /// An event that the daemon must report. A tick has at most a few events.
 struct Event {
   enum class Kind : std::uint8_t {
@@ -169,55 +187,91 @@ struct Event {
     fault_acknowledged,
     sequence_started,
     sequence_finished,
-    step_started,
-    grip_result,
+    step_started,  ///< `value` is the number of retries of the step
+    grip_result,   ///< `value` is the displacement shortfall [mm]
     request_refused,
-    model_health_changed,
-    reading_invalid,
+    model_health_changed,  ///< `value` is the root mean square of the residual [mm]
+    reading_invalid,       ///< `value` is the age of the reading [s]
     reading_valid,
-    contact,           ///< a finger has come into contact with an object during a motion
-    limit_binds,       ///< a limit has restricted a command for longer than LimitWatch::moment_s
+    contact,           ///< a finger has come into contact with an object during a motion; `value` is the
+                       ///< displacement [mm]
+    limit_binds,       ///< a limit has restricted a command for longer than LimitWatch::moment_s; `value` is
+                       ///< the command [kPa]
     limit_free,        ///< the limit that was reported by limit_binds no longer restricts the command
     release_asked,     ///< a release was requested, so the sequence continues with its release step
-    reading_unsteady,  ///< the reading jumps back and forth repeatedly
+    reading_unsteady,  ///< the reading jumps back and forth repeatedly; `value` is the last jump [mm]
     reading_steady,    ///< the reading has not jumped for JumpWatch::calm_s
     start_checked,     ///< the result of a request of the kind `check`: a start would be accepted now
-    not_at_rest,       ///< a start found a finger that was not at rest. `detail` is an UnsettledReason;
-                       ///< `value` is the model offset [mm]
+    not_at_rest,       ///< a start found a finger that was not at rest; `value` is the model offset [mm]
   };
+  /// The detail of an event. DetailOf gives the type for each kind. The integer is the index of a step.
+  using Detail =
+      std::variant<std::monostate, State, FaultCode, SequenceEnd, std::uint16_t, GripAnswer, RequestRefusal,
+                   HealthState, model::Validity, OnContact, BindingLimit, UnsettledReason>;
+
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
-  /// Detail of the event. Its type depends on `kind`: State, FaultCode, GripResult, step, RefusalCode,
-  /// HealthState, Validity, SequenceEnd, OnContact, BindingLimit or UnsettledReason.
-  std::uint16_t detail = 0;
+  Detail detail;
   std::uint32_t request = 0;  ///< id of the request that the event answers; 0 if the event answers no request
-  /// Value of the event: a displacement shortfall, an age, a contact position or another number. The value is
-  /// 0 for an event without a number.
-  double value = 0;
-  GripEvidence evidence = GripEvidence::none;  ///< for a grip result: the evidence on which it is based
+  double value = 0;           ///< number of the event; 0 for an event without a number
 };
+// The loop copies events to other threads through a ring buffer.
+static_assert(std::is_trivially_copyable_v<Event> && sizeof(Event) == 24);
+
+/// Returns the type of the detail of an event of the kind `kind`; std::monostate for an event without detail.
+template <Event::Kind kind>
+[[nodiscard]] consteval auto type_of_detail() noexcept {
+  using enum Event::Kind;
+  if constexpr (kind == state_changed) {
+    return std::type_identity<State>();
+  } else if constexpr (kind == fault_latched || kind == fault_acknowledged) {
+    return std::type_identity<FaultCode>();
+  } else if constexpr (kind == sequence_finished) {
+    return std::type_identity<SequenceEnd>();
+  } else if constexpr (kind == step_started) {
+    return std::type_identity<std::uint16_t>();
+  } else if constexpr (kind == grip_result) {
+    return std::type_identity<GripAnswer>();
+  } else if constexpr (kind == request_refused) {
+    return std::type_identity<RequestRefusal>();
+  } else if constexpr (kind == model_health_changed) {
+    return std::type_identity<HealthState>();
+  } else if constexpr (kind == reading_invalid || kind == reading_valid) {
+    return std::type_identity<model::Validity>();
+  } else if constexpr (kind == contact) {
+    return std::type_identity<OnContact>();
+  } else if constexpr (kind == limit_binds || kind == limit_free) {
+    return std::type_identity<BindingLimit>();
+  } else if constexpr (kind == not_at_rest) {
+    return std::type_identity<UnsettledReason>();
+  } else {
+    return std::type_identity<std::monostate>();
+  }
+}
+template <Event::Kind kind>
+using DetailOf = typename decltype(type_of_detail<kind>())::type;
 
 /// The events of one tick. If the list is full, further events are counted, but not stored.
 class EventList {
  public:
-  void add(const Event& event) noexcept {
+  /// Adds an event that concerns the complete rig.
+  template <Event::Kind kind>
+  void add(DetailOf<kind> detail, std::uint32_t request = 0, double value = 0) noexcept {
+    add_of_channel<kind>(whole_rig, detail, request, value);
+  }
+  /// Adds an event of a channel.
+  template <Event::Kind kind>
+  void add_of_channel(std::size_t channel, DetailOf<kind> detail, std::uint32_t request = 0,
+                      double value = 0) noexcept {
     if (count_ < events_.size()) {
-      events_[count_++] = event;
+      events_[count_++] = {.kind = kind,
+                           .channel = static_cast<std::uint8_t>(channel),
+                           .detail = detail,
+                           .request = request,
+                           .value = value};
     } else {
       ++lost_;
     }
-  }
-  /// Adds an event that concerns the complete rig. The type of `detail` is one of the types that the comment
-  /// on Event::detail lists.
-  template <class Detail>
-  void add(Event::Kind kind, Detail detail, std::uint32_t request = 0, double value = 0) noexcept {
-    add_of_channel(whole_rig, kind, detail, request, value);
-  }
-  template <class Detail>
-  void add_of_channel(std::size_t channel, Event::Kind kind, Detail detail, std::uint32_t request = 0,
-                      double value = 0) noexcept {
-    add({kind, static_cast<std::uint8_t>(channel), static_cast<std::uint16_t>(detail), request, value,
-         GripEvidence::none});
   }
   void clear() noexcept { count_ = lost_ = 0; }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -68,39 +69,35 @@ EventEntry entry_of(const Table& table, Which which) {
 
 using Sequence = control::PreparedSequence;
 
-/// Returns the fault condition because of which the reset was refused.
-control::FaultCode refused_because_of(const Event& event) {
-  return static_cast<control::FaultCode>(static_cast<std::uint16_t>(event.value));
-}
-
 void describe_state(const Event& event, const Sequence*, EventEntry& entry) {
-  entry.code = control::name_of(static_cast<control::State>(event.detail));
+  entry.code = control::name_of(std::get<control::State>(event.detail));
   entry.text = fmt::format("State: {}.", entry.code);
 }
 
 void describe_fault(const Event& event, const Sequence*, EventEntry& entry) {
-  const control::FaultInfo& info = control::info_of(static_cast<control::FaultCode>(event.detail));
+  const control::FaultInfo& info = control::info_of(std::get<control::FaultCode>(event.detail));
   entry.code = info.id;
   entry.text = fmt::format("Fault {} {}: {}", info.id, info.name, info.meaning);
   entry.severity = Severity::error;
 }
 
 void describe_acknowledged(const Event& event, const Sequence*, EventEntry& entry) {
-  const control::FaultInfo& info = control::info_of(static_cast<control::FaultCode>(event.detail));
+  const control::FaultInfo& info = control::info_of(std::get<control::FaultCode>(event.detail));
   entry.code = info.id;
   entry.text = fmt::format("Fault {} {} was acknowledged.", info.id, info.name);
 }
 
 void describe_step(const Event& event, const Sequence* sequence, EventEntry& entry) {
-  entry.code = fmt::format("{}", event.detail);
-  const bool known = sequence != nullptr && event.detail < sequence->steps.size();
-  const control::Step* step = known ? &sequence->steps[event.detail].step : nullptr;
-  entry.text = step != nullptr ? fmt::format("Step {} started: {}.", event.detail + 1, step->name)
-                               : fmt::format("Step {} started.", event.detail + 1);
+  const auto index = std::get<std::uint16_t>(event.detail);
+  entry.code = fmt::format("{}", index);
+  const bool known = sequence != nullptr && index < sequence->steps.size();
+  const control::Step* step = known ? &sequence->steps[index].step : nullptr;
+  entry.text = step != nullptr ? fmt::format("Step {} started: {}.", index + 1, step->name)
+                               : fmt::format("Step {} started.", index + 1);
 }
 
 void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
-  const auto result = static_cast<control::GripResult>(event.detail);
+  const control::GripResult result = std::get<control::GripAnswer>(event.detail).result;
   entry.code = control::title_of(result);
   entry.text = fmt::format("Grip result: {}.", entry.code);
   const bool bad = result == control::GripResult::part_lost || result == control::GripResult::error;
@@ -108,17 +105,17 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 }
 
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
-  const auto refusal = static_cast<control::RefusalCode>(event.detail);
-  entry.code = control::id_of(refusal);
+  const auto& refusal = std::get<control::RequestRefusal>(event.detail);
+  entry.code = control::id_of(refusal.code);
+  entry.value = static_cast<double>(refusal.cause);
   // The text does not need the names of the channels, because describe() puts the name of the channel before
   // the text.
-  entry.text =
-      fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
+  entry.text = fmt::format("The request was refused. {}", sentences_of(refusal.code, {refusal.cause}, {}));
   entry.severity = Severity::warning;
 }
 
 void describe_health(const Event& event, const Sequence*, EventEntry& entry) {
-  const auto health = static_cast<control::HealthState>(event.detail);
+  const auto health = std::get<control::HealthState>(event.detail);
   entry.code = control::name_of(health);
   entry.text = fmt::format("Model status: {} (residual {:.3g} mm RMS).", entry.code, event.value);
   const bool good = health == control::HealthState::healthy || health == control::HealthState::unknown;
@@ -126,7 +123,7 @@ void describe_health(const Event& event, const Sequence*, EventEntry& entry) {
 }
 
 void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
-  const auto action = static_cast<control::OnContact>(event.detail);
+  const auto action = std::get<control::OnContact>(event.detail);
   entry.code = control::name_of(action);
   const char* then = "";
   switch (action) {
@@ -156,7 +153,7 @@ void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
 
 void describe_limit(const Event& event, const Sequence*, EventEntry& entry) {
   const bool binds = event.kind == Kind::limit_binds;
-  const auto limit = static_cast<control::BindingLimit>(event.detail);
+  const auto limit = std::get<control::BindingLimit>(event.detail);
   entry.code = control::name_of(limit);
   const std::string_view words = control::words_of(limit);
   entry.text = binds ? fmt::format("Limit active: {}. The command is {:.1f} kPa.", words, event.value)
@@ -183,7 +180,7 @@ void describe_start(const Event&, const Sequence* sequence, EventEntry& entry) {
 }
 
 void describe_end(const Event& event, const Sequence* sequence, EventEntry& entry) {
-  entry.code = control::name_of(static_cast<control::SequenceEnd>(event.detail));
+  entry.code = control::name_of(std::get<control::SequenceEnd>(event.detail));
   entry.text = fmt::format("The sequence{} ended: {}.", quoted_name(sequence), entry.code);
 }
 
@@ -192,7 +189,7 @@ void describe_reading(const Event& event, const Sequence*, EventEntry& entry) {
     entry.text = "The reading is valid again.";
     return;
   }
-  entry.code = name_of(static_cast<model::Validity>(event.detail));
+  entry.code = name_of(std::get<model::Validity>(event.detail));
   entry.text = fmt::format("The reading is not valid: {}.", entry.code);
   entry.severity = Severity::warning;
 }
@@ -216,7 +213,7 @@ void describe_check(const Event&, const Sequence*, EventEntry& entry) {
 }
 
 void describe_not_at_rest(const Event& event, const Sequence*, EventEntry& entry) {
-  const bool moves = static_cast<control::UnsettledReason>(event.detail) == control::UnsettledReason::moves;
+  const bool moves = std::get<control::UnsettledReason>(event.detail) == control::UnsettledReason::moves;
   entry.code = moves ? "moves" : "off_model";
   entry.text =
       moves

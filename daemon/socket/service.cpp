@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -19,10 +20,10 @@ constexpr std::size_t most_clients = 256;
 
 /// Returns the fault to which the reply of an event refers.
 control::Fault fault_in(const control::Event& event) {
-  const double number = event.kind == EventKind::fault_acknowledged ? event.detail
-                        : event.kind == EventKind::request_refused  ? event.value
-                                                                    : 0;
-  return {static_cast<control::FaultCode>(static_cast<std::uint16_t>(number)), event.channel, 0};
+  control::FaultCode code = control::FaultCode::none;
+  if (event.kind == EventKind::fault_acknowledged) code = std::get<control::FaultCode>(event.detail);
+  if (event.kind == EventKind::request_refused) code = std::get<control::RequestRefusal>(event.detail).cause;
+  return {.code = code, .channel = event.channel};
 }
 
 }  // namespace
@@ -149,13 +150,13 @@ void Service::take(const StampedEvent& stamped) {
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
     sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {
-    ending_ = {event.request, static_cast<control::SequenceEnd>(event.detail)};
+    ending_ = {event.request, std::get<control::SequenceEnd>(event.detail)};
   }
   const auto answer = answers_.find(event.request);
   if (answer != answers_.end() && answer->second.kind == Answer::Kind::pending) {
     const bool refused = event.kind == EventKind::request_refused;
     answer->second.kind = refused ? Answer::Kind::refused : Answer::Kind::accepted;
-    if (refused) answer->second.refusal = static_cast<control::RefusalCode>(event.detail);
+    if (refused) answer->second.refusal = std::get<control::RequestRefusal>(event.detail).code;
     answer->second.fault = fault_in(event);
     std::erase_if(stops_of_, [&event](const auto& stop) { return stop.second == event.request; });
   }
@@ -170,7 +171,7 @@ void Service::take(const StampedEvent& stamped) {
 void Service::note_result(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
   if (event.channel >= results_.size()) return;
-  results_[event.channel] = static_cast<control::GripResult>(event.detail);
+  results_[event.channel] = std::get<control::GripAnswer>(event.detail).result;
   const control::GripResult overall =
       overall_result(results_, sequence_ ? sequence_->prepared.channels : ~0U);
   if (overall == std::exchange(overall_, overall) || overall == control::GripResult::none) return;

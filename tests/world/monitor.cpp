@@ -117,7 +117,7 @@ void Monitor::watch_events(Nanoseconds now, const control::TickOutput& output) {
         armed_ = false;
         break;
       case Kind::state_changed:
-        if (static_cast<State>(event.detail) == State::stopping) armed_ = false;
+        if (std::get<State>(event.detail) == State::stopping) armed_ = false;
         break;
       default:
         break;
@@ -128,7 +128,7 @@ void Monitor::watch_events(Nanoseconds now, const control::TickOutput& output) {
 void Monitor::watch_state(Nanoseconds now, const control::TickOutput& output) {
   for (const control::Event& event : output.events) {
     if (event.kind != control::Event::Kind::state_changed) continue;
-    const auto state = static_cast<State>(event.detail);
+    const auto state = std::get<State>(event.detail);
     if (state != state_ && !may_follow(state_, state))
       violate(now, "the states change only as in the state diagram",
               fmt::format("{} after {}", control::name_of(state), control::name_of(state_)));

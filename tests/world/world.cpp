@@ -287,7 +287,7 @@ class World final : public Host {
     result_.faults += event.kind == EventKind::fault_latched ? 1U : 0U;
     result_.sequences += event.kind == EventKind::sequence_started ? 1U : 0U;
     const bool holding = event.kind == EventKind::grip_result &&
-                         static_cast<control::GripResult>(event.detail) == control::GripResult::holding;
+                         std::get<control::GripAnswer>(event.detail).result == control::GripResult::holding;
     result_.holdings += holding ? 1U : 0U;
     if (!options_.trace) return;
     const daemon::EventEntry entry = daemon::describe(event, daemon_->provenance.channel_names, nullptr);

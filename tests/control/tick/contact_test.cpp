@@ -47,7 +47,7 @@ class ContactTest : public testing::Test {
   static std::size_t contacts(const SimulatedRig& rig, OnContact action) {
     return static_cast<std::size_t>(
         std::count_if(rig.events.begin(), rig.events.end(), [&](const Event& event) {
-          return event.kind == Event::Kind::contact && event.detail == static_cast<std::uint16_t>(action);
+          return event.kind == Event::Kind::contact && event.detail == Event::Detail(action);
         }));
   }
   [[nodiscard]] PreparedSequence steps(const std::string& text) const {
@@ -156,7 +156,7 @@ TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
     std::set<std::string> names;
     for (const Event& event : rig.events) {
       if (event.kind == Event::Kind::limit_binds)
-        names.emplace(name_of(static_cast<BindingLimit>(event.detail)));
+        names.emplace(name_of(std::get<BindingLimit>(event.detail)));
     }
     return names;
   };
@@ -297,7 +297,7 @@ TEST_F(ContactTest, AHoldLastsUntilItsReleaseIsAskedFor) {
     return event.kind == Event::Kind::sequence_finished;
   });
   ASSERT_NE(end, rig.events.end());
-  EXPECT_EQ(end->detail, static_cast<std::uint16_t>(SequenceEnd::done));
+  EXPECT_EQ(end->detail, Event::Detail(SequenceEnd::done));
 }
 
 TEST_F(ContactTest, AReleaseIsHeardInEveryStepAndNothingRisesAfterIt) {
@@ -344,7 +344,7 @@ TEST_F(ContactTest, AReleaseWorksAfterASequenceAndIsRefusedWhereThereIsNothing) 
   rig.tick();
   const auto refused = rig.answer(Event::Kind::request_refused);
   ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::nothing_to_release));
+  EXPECT_EQ(refused->detail, Event::Detail(RequestRefusal{RefusalCode::nothing_to_release}));
 }
 
 }  // namespace

@@ -160,7 +160,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   rig.tick();
   const auto refused = rig.answer(Event::Kind::request_refused);
   ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::faulted));
+  EXPECT_EQ(refused->detail, Event::Detail(RequestRefusal{RefusalCode::faulted}));
 
   rig.request(Request::Kind::acknowledge);
   rig.tick();
@@ -371,7 +371,8 @@ TEST_F(SingleFault, AcknowledgingIsRefusedWhileTheCauseIsThere) {
   rig.tick();
   const auto refused = rig.answer(Event::Kind::request_refused);
   ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::cause_persists));
+  EXPECT_EQ(refused->detail,
+            Event::Detail(RequestRefusal{RefusalCode::cause_persists, FaultCode::emergency_stop}));
   rig.emergency_stop = false;
   rig.run(0.5);
   EXPECT_EQ(rig.output().state, State::faulted)
@@ -457,7 +458,8 @@ TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
   const auto refused = rig.answer(Event::Kind::request_refused);
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->channel, 0);
-  EXPECT_EQ(refused->value, static_cast<double>(FaultCode::reading_out_of_range));
+  EXPECT_EQ(refused->detail,
+            Event::Detail(RequestRefusal{RefusalCode::cause_persists, FaultCode::reading_out_of_range}));
   rig.fault[0].validity.reset();
   rig.run(0.1);
   EXPECT_EQ(rig.output().cause.code, FaultCode::none);
@@ -533,7 +535,7 @@ TEST(FaultAfterAPause, ASequenceDoesNotEndBeforeTheFirstExchangeAfterAPause) {
     const auto finished = std::find_if(rig.events.begin(), rig.events.end(), [](const Event& event) {
       return event.kind == Event::Kind::sequence_finished;
     });
-    EXPECT_EQ(static_cast<SequenceEnd>(finished->detail), vented ? SequenceEnd::faulted : SequenceEnd::done);
+    EXPECT_EQ(std::get<SequenceEnd>(finished->detail), vented ? SequenceEnd::faulted : SequenceEnd::done);
   }
 }
 

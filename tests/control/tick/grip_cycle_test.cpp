@@ -35,7 +35,7 @@ TEST_F(GripCycle, AStoneIsHeldAndReleased) {
   ASSERT_TRUE(rig.run_until(State::idle, 30));
   EXPECT_EQ(rig.result(0), GripResult::released);
   EXPECT_EQ(rig.result(1), GripResult::released);
-  EXPECT_EQ(rig.events.back().detail, static_cast<std::uint16_t>(State::idle));
+  EXPECT_EQ(rig.events.back().detail, Event::Detail(State::idle));
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
   EXPECT_NEAR(rig.board_kpa(0), 0, 1e-9);
 }
@@ -53,7 +53,8 @@ TEST_F(GripCycle, NoPartIsSaidByTheRecipeForTheStoneTooAfterItsRetry) {
   EXPECT_EQ(rig.result(0), GripResult::no_part);
   std::size_t attempts = 0;
   for (const Event& event : rig.events) {
-    attempts += event.kind == Event::Kind::step_started && event.detail == 1 ? 1U : 0U;
+    attempts +=
+        event.kind == Event::Kind::step_started && event.detail == Event::Detail(std::uint16_t{1}) ? 1U : 0U;
   }
   EXPECT_EQ(attempts, 2U);
 }

@@ -21,7 +21,7 @@ class HealthInFreeMotionTest : public testing::Test {
   static bool unfit(const SimulatedRig& rig) {
     for (const Event& event : rig.events) {
       if (event.kind == Event::Kind::model_health_changed &&
-          event.detail == static_cast<std::uint16_t>(HealthState::unfit)) {
+          event.detail == Event::Detail(HealthState::unfit)) {
         return true;
       }
     }

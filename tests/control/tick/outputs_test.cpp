@@ -117,7 +117,7 @@ TEST_F(Outputs, AReadingThatGoesAndComesIsTold) {
   ASSERT_EQ(rig.count(Event::Kind::reading_invalid), 1U);
   EXPECT_EQ(rig.count(Event::Kind::reading_valid), 0U);
   EXPECT_EQ(rig.events.back().channel, 1);
-  EXPECT_EQ(rig.events.back().detail, static_cast<std::uint16_t>(model::Validity::sensor_error));
+  EXPECT_EQ(rig.events.back().detail, Event::Detail(model::Validity::sensor_error));
   rig.fault[1].validity.reset();
   rig.tick();
   EXPECT_EQ(rig.count(Event::Kind::reading_valid), 1U);
@@ -153,7 +153,7 @@ TEST_F(Outputs, AStartThatAVentHasOvertakenIsRefused) {
     rig.tick();
     EXPECT_EQ(rig.output().state, State::idle);
     ASSERT_EQ(rig.count(Event::Kind::request_refused), 1U);
-    EXPECT_EQ(rig.events.front().detail, static_cast<std::uint16_t>(RefusalCode::overtaken));
+    EXPECT_EQ(rig.events.front().detail, Event::Detail(RequestRefusal{RefusalCode::overtaken}));
     EXPECT_EQ(rig.events.front().request, 17U);
   }
   rig.request(Request{Request::Kind::start, 19, &pick});

@@ -16,7 +16,7 @@ class Requests : public testing::Test {
     rig.tick();
     const auto refused = rig.answer(Event::Kind::request_refused);
     ASSERT_TRUE(refused) << "expected " << name_of(code);
-    EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(code)) << "expected " << name_of(code);
+    EXPECT_EQ(refused->detail, Event::Detail(RequestRefusal{code})) << "expected " << name_of(code);
   }
   void start(SimulatedRig& rig, const PreparedSequence& sequence) {
     ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -130,7 +130,7 @@ TEST_F(Requests, StopActsAsThePhaseSays) {
         return event.kind == Event::Kind::sequence_finished;
       });
       ASSERT_NE(finished, rig.events.end());
-      EXPECT_EQ(finished->detail, static_cast<std::uint16_t>(SequenceEnd::stopped));
+      EXPECT_EQ(finished->detail, Event::Detail(SequenceEnd::stopped));
     }
   }
 }
@@ -159,7 +159,7 @@ TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
   const auto refused = std::ranges::find(rig.events, Event::Kind::request_refused, &Event::kind);
   ASSERT_NE(refused, rig.events.end());
   EXPECT_EQ(refused->request, 8U);
-  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::named_start_not_running));
+  EXPECT_EQ(refused->detail, Event::Detail(RequestRefusal{RefusalCode::named_start_not_running}));
   rig.request({Request::Kind::stop, 9, nullptr, 7});
   rig.tick();
   EXPECT_FALSE(may_rise(rig.output().state));
@@ -266,7 +266,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   const auto why = std::ranges::find(rig.events, Event::Kind::not_at_rest, &Event::kind);
   ASSERT_NE(why, rig.events.end());
   EXPECT_EQ(why->channel, 0);
-  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(UnsettledReason::moves));
+  EXPECT_EQ(why->detail, Event::Detail(UnsettledReason::moves));
 }
 
 TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
@@ -298,7 +298,7 @@ TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
   const auto why = std::ranges::find(rig.events, Event::Kind::not_at_rest, &Event::kind);
   ASSERT_NE(why, rig.events.end());
   EXPECT_EQ(why->channel, 0);
-  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(UnsettledReason::off_model));
+  EXPECT_EQ(why->detail, Event::Detail(UnsettledReason::off_model));
   EXPECT_NEAR(why->value, 1.5 * settings.detection.margin_mm, 0.1);
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);

@@ -36,7 +36,7 @@ class SequencePlayback : public testing::Test {
   static SequenceEnd end_of(const SimulatedRig& rig) {
     for (const Event& event : rig.events) {
       if (event.kind == Event::Kind::sequence_finished) {
-        return static_cast<SequenceEnd>(event.detail);
+        return std::get<SequenceEnd>(event.detail);
       }
     }
     ADD_FAILURE() << "the sequence did not finish";
@@ -71,7 +71,7 @@ TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
     std::vector<std::uint16_t> begun;
     for (const Event& event : rig.events) {
       if (event.kind == Event::Kind::step_started) {
-        begun.push_back(event.detail);
+        begun.push_back(std::get<std::uint16_t>(event.detail));
       }
     }
     std::vector<std::uint16_t> expected{0};
@@ -179,10 +179,9 @@ TEST_F(SequencePlayback, TheEvidenceComesWithTheAnswer) {
     }
   }
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_EQ(answers[0].detail, static_cast<std::uint16_t>(GripResult::holding));
-  EXPECT_EQ(answers[0].evidence, GripEvidence::displacement);
+  EXPECT_EQ(answers[0].detail, Event::Detail(GripAnswer{GripResult::holding, GripEvidence::displacement}));
   EXPECT_GT(answers[0].value, settings.detection.margin_mm);
-  EXPECT_EQ(answers[1].detail, static_cast<std::uint16_t>(GripResult::released));
+  EXPECT_EQ(std::get<GripAnswer>(answers[1].detail).result, GripResult::released);
   EXPECT_LT(answers[1].value, settings.detection.margin_mm);
 }
 

@@ -56,7 +56,7 @@ TEST_F(UnsteadyTest, IsAFaultWhereTheSettingsSaySo) {
   rig.request(Request::Kind::acknowledge);
   rig.tick();
   EXPECT_EQ(rig.answer(Event::Kind::request_refused)->detail,
-            static_cast<std::uint16_t>(RefusalCode::cause_persists));
+            Event::Detail(RequestRefusal{RefusalCode::cause_persists, FaultCode::reading_jumped}));
   rig.run(3);
   rig.request(Request::Kind::acknowledge);
   rig.tick();

@@ -31,6 +31,17 @@ TEST(EventLog, AStartIsToldWithWhatItWasAskedFor) {
   EXPECT_EQ(entry.request, 7U);
 }
 
+TEST(EventLog, ARefusedResetGivesTheNumberOfTheCause) {
+  control::EventList events;
+  events.add_of_channel<control::Event::Kind::request_refused>(
+      1, {control::RefusalCode::cause_persists, control::FaultCode::reading_out_of_range}, 8);
+  const EventEntry entry = describe(*events.begin(), {"left", "right"}, nullptr);
+  EXPECT_EQ(entry.code, "R09");
+  EXPECT_EQ(entry.value, 202);
+  EXPECT_EQ(entry.channel, "right");
+  EXPECT_NE(entry.text.find("F202 reading_out_of_range"), std::string::npos) << entry.text;
+}
+
 TEST(EventLog, AnotherClientOfTheBoardIsAWarningWithTheirNumber) {
   BusEvent event;
   event.kind = BusEvent::Kind::another_client;

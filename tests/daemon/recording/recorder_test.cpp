@@ -50,7 +50,7 @@ class RecorderTest : public ::testing::Test {
     return *recorder_;
   }
 
-  void event(Event::Kind kind, std::uint16_t detail = 0, std::uint32_t request = 0) {
+  void event(Event::Kind kind, const Event::Detail& detail = {}, std::uint32_t request = 0) {
     StampedEvent event;
     event.at = now_;
     event.event.kind = kind;
@@ -106,7 +106,7 @@ class RecorderTest : public ::testing::Test {
 
 TEST_F(RecorderTest, RecordsASequenceFromItsStartToHalfASecondAfterItsMotion) {
   ticks(200, State::idle);
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(100, State::running);
   ticks(200, State::idle);
   recorder().finish();
@@ -128,7 +128,7 @@ TEST_F(RecorderTest, RecordsASequenceFromItsStartToHalfASecondAfterItsMotion) {
 
 TEST_F(RecorderTest, AFaultAtRestHasItsLastSecondAttached) {
   ticks(300, State::idle);
-  event(Event::Kind::fault_latched, static_cast<std::uint16_t>(control::FaultCode::bus_down));
+  event(Event::Kind::fault_latched, control::FaultCode::bus_down);
   ticks(200, State::faulted);
   recorder().finish();
   ASSERT_EQ(folders(), std::vector<std::string>{"run-0001_fault"});
@@ -140,9 +140,9 @@ TEST_F(RecorderTest, AFaultAtRestHasItsLastSecondAttached) {
 }
 
 TEST_F(RecorderTest, AFaultDuringASequenceStaysInItsRecording) {
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
-  event(Event::Kind::fault_latched, static_cast<std::uint16_t>(control::FaultCode::reading_jumped));
+  event(Event::Kind::fault_latched, control::FaultCode::reading_jumped);
   ticks(200, State::faulted);
   recorder().finish();
   ASSERT_EQ(folders().size(), 1U);
@@ -151,7 +151,7 @@ TEST_F(RecorderTest, AFaultDuringASequenceStaysInItsRecording) {
 
 TEST_F(RecorderTest, AStartSoonAfterARunGetsARecordingOfItsOwn) {
   for (int run = 0; run < 2; ++run) {
-    event(Event::Kind::sequence_started, 0, 7);
+    event(Event::Kind::sequence_started, {}, 7);
     ticks(10, State::running);
     ticks(10, State::idle);
   }
@@ -164,7 +164,7 @@ TEST_F(RecorderTest, AlwaysIsOneRecordingFromStartToStop) {
   settings_.mode = rig::RecorderSettings::Mode::always;
   ticks(10, State::starting);
   ticks(100, State::idle);
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
   recorder().finish();
   ASSERT_EQ(folders().size(), 1U);
@@ -174,7 +174,7 @@ TEST_F(RecorderTest, AlwaysIsOneRecordingFromStartToStop) {
 
 TEST_F(RecorderTest, OffRecordsNothing) {
   settings_.mode = rig::RecorderSettings::Mode::off;
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
   recorder().finish();
   EXPECT_TRUE(folders().empty());
@@ -190,7 +190,7 @@ TEST_F(RecorderTest, ANamedFolderOverrulesTheMode) {
 }
 
 TEST_F(RecorderTest, DroppedRowsAreCounted) {
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(1, State::running);
   shared_.records_dropped.store(12);
   ticks(1, State::running);
@@ -206,7 +206,7 @@ TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{3000, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(100, State::running);
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
@@ -226,19 +226,19 @@ TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
 
 TEST_F(RecorderTest, TriesAgainWithTheNextSequenceAMinuteAfterTheDiskRefused) {
   settings_.directory = "/proc/softgrip";
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
   EXPECT_EQ(log_.since(0, 100).size(), 1U) << "the write failure is reported once, not for every row";
   settings_.directory = temporary_.path();
   ticks(6100, State::idle);
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
   recorder().finish();
   EXPECT_EQ(folders().size(), 1U);
 }
 
 TEST_F(RecorderTest, RunJsonIsThereFromTheFirstRowOn) {
-  event(Event::Kind::sequence_started, 0, 7);
+  event(Event::Kind::sequence_started, {}, 7);
   ticks(1, State::running);
   EXPECT_EQ(json(folders().front())["state"], "recording");
 }
