@@ -23,7 +23,7 @@ softgrip_room(model/file USES base document model)
 # The code that is executed in every control cycle.
 softgrip_room(control/elements USES base model)
 softgrip_room(control/feedforward USES base model control/elements)
-softgrip_room(control/tick USES document model control/elements control/feedforward)
+softgrip_room(control/tick USES base document model control/elements control/feedforward)
 # Computations that are made before the control cycles start: sequences and tuning.
 softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick
   LIBRARIES Eigen3::Eigen)
@@ -45,9 +45,9 @@ softgrip_room(simulation/emulator
   USES base base/net document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
 # The file format of softgrip-plc. `softgrip check` also reads it.
-softgrip_room(rig/plc_file USES base/net document LIBRARIES fmt::fmt)
+softgrip_room(rig/plc_file USES base base/net document LIBRARIES fmt::fmt)
 # The file format of softgrip-web. `softgrip check` also reads it.
-softgrip_room(rig/web_file USES base/net document)
+softgrip_room(rig/web_file USES base base/net document)
 
 # The file format of the rig.
 softgrip_room(rig

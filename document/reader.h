@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "document/node.h"
 
 namespace softgrip::document {
@@ -73,6 +75,25 @@ class MapReader {
   std::size_t choice(std::string_view key, const std::vector<std::string>& choices);
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices) {
     return given(key) ? std::optional(choice(key, choices)) : std::nullopt;
+  }
+  /// Reads one of the names of an enum and returns its value. After a problem, returns the first value.
+  template <class Enum, std::size_t count>
+  Enum choice(std::string_view key, const EnumTable<Enum, std::string_view, count>& names) {
+    return static_cast<Enum>(choice(key, names.names()));
+  }
+  template <class Enum, std::size_t count>
+  std::optional<Enum> optional_choice(std::string_view key,
+                                      const EnumTable<Enum, std::string_view, count>& names) {
+    return given(key) ? std::optional(choice(key, names)) : std::nullopt;
+  }
+  /// Reads the name of one of the values `permitted`.
+  template <class Enum, std::size_t count>
+  std::optional<Enum> optional_choice(std::string_view key,
+                                      const EnumTable<Enum, std::string_view, count>& names,
+                                      std::span<const Enum> permitted) {
+    std::vector<std::string> choices;
+    for (const Enum value : permitted) choices.emplace_back(names[value]);
+    return given(key) ? std::optional(permitted[choice(key, choices)]) : std::nullopt;
   }
   /// Returns the node under a key; the node may be of any kind. Returns nullptr if the key is absent, and
   /// reports a problem in this case if `required` is true.

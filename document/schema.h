@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "base/numbers.h"
 #include "base/text.h"
 #include "base/time.h"
@@ -31,6 +32,19 @@ struct Allowed {
   Range range{};
   std::vector<std::string> words;
 };
+
+/// The permitted values of a key with the type `Enum`: the names of all values.
+template <class Enum>
+struct AllowedNames : Allowed {
+  template <std::size_t count>
+  AllowedNames(const EnumTable<Enum, std::string_view, count>& names) : Allowed(names.names()) {}
+};
+template <class T>
+struct AllowedOf {
+  using type = std::conditional_t<std::is_enum_v<T>, AllowedNames<T>, Allowed>;
+};
+template <class T>
+struct AllowedOf<std::optional<T>> : AllowedOf<T> {};
 
 /// Description of a key for a reference page.
 struct KeyFacts {
@@ -101,7 +115,7 @@ void read_value(MapReader& reader, std::string_view key, const Allowed& allowed,
   if constexpr (std::is_same_v<T, bool>) {
     value = allowed.words.empty() ? reader.boolean(key) : reader.choice(key, allowed.words) == 1;
   } else if constexpr (std::is_enum_v<T>) {
-    value = static_cast<T>(reader.choice(key, allowed.words));
+    value = static_cast<T>(reader.choice(key, allowed.words));  // the words are AllowedNames
   } else if constexpr (std::is_integral_v<T>) {
     value = static_cast<T>(reader.integer(key, allowed.range));
   } else if constexpr (std::is_floating_point_v<T>) {
@@ -137,14 +151,15 @@ std::string default_text(const T& value, const Allowed& allowed) {
 
 /// Declares a required key. `member` is the member in which the value is stored.
 template <class S, class T>
-Key<S> required(std::string name, T S::*member, const Allowed& allowed, std::string meaning) {
+Key<S> required(std::string name, T S::*member, const typename AllowedOf<T>::type& allowed,
+                std::string meaning) {
   std::string values = "a text";
   if constexpr (std::is_same_v<T, bool>)
     values = text_of(allowed.words.empty() ? Allowed{"true", "false"} : allowed);
   else if constexpr (!std::is_same_v<T, std::string>)
     values = text_of(allowed);
   return {{std::move(name), std::move(values), "", std::move(meaning)},
-          [member, allowed](MapReader& reader, const KeyFacts& key, S& settings) {
+          [member, allowed = Allowed(allowed)](MapReader& reader, const KeyFacts& key, S& settings) {
             read_value(reader, key.name, allowed, settings.*member);
           }};
 }
@@ -152,8 +167,8 @@ Key<S> required(std::string name, T S::*member, const Allowed& allowed, std::str
 /// Declares an optional key. Its default is the value of the member in `S{}`. `fallback` describes a default
 /// that has no text, or that the caller computes.
 template <class S, class T>
-Key<S> optional(std::string name, T S::*member, const Allowed& allowed, std::string meaning,
-                std::string fallback = "") {
+Key<S> optional(std::string name, T S::*member, const typename AllowedOf<T>::type& allowed,
+                std::string meaning, std::string fallback = "") {
   Key<S> key = required(std::move(name), member, allowed, std::move(meaning));
   key.facts.fallback = fallback.empty() ? default_text(S{}.*member, allowed) : std::move(fallback);
   key.read = [read = std::move(key.read)](MapReader& reader, const KeyFacts& facts, S& settings) {

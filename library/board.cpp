@@ -67,7 +67,7 @@ Reading reading_of(const model::Reading& reading) noexcept {
 }  // namespace library
 
 std::string name_of(BusStatus status) {
-  return drivers::name_of(static_cast<drivers::BusStatus>(status));
+  return std::string(drivers::name_of(static_cast<drivers::BusStatus>(status)));
 }
 
 Board::~Board() = default;

@@ -84,26 +84,7 @@ double corners_kpa(std::span<const Corner> corners, double time_s) {
   return corners.back().kpa;
 }
 
-constexpr std::array<std::string_view, 6> names{"tp1", "tp2", "sp1", "sp2", "steps", "hold"};
-
 }  // namespace
-
-std::optional<SignalName> signal_named(std::string_view name) {
-  for (const SignalName signal : all_signals()) {
-    if (name_of(signal) == name) return signal;
-  }
-  return std::nullopt;
-}
-
-std::string_view name_of(SignalName signal) {
-  return names[static_cast<std::size_t>(signal)];
-}
-
-const std::vector<SignalName>& all_signals() {
-  static const std::vector<SignalName> all{SignalName::tp1, SignalName::tp2,   SignalName::sp1,
-                                           SignalName::sp2, SignalName::steps, SignalName::hold};
-  return all;
-}
 
 double duration_s(SignalName signal) {
   switch (signal) {

@@ -6,15 +6,22 @@
 #include <string_view>
 #include <vector>
 
+#include "base/enum_table.h"
+
 namespace softgrip::model {
 
 enum class SignalName { tp1, tp2, sp1, sp2, steps, hold };
 
-/// Returns the test signal with this name; nullopt if no test signal has this name.
-[[nodiscard]] std::optional<SignalName> signal_named(std::string_view name);
-[[nodiscard]] std::string_view name_of(SignalName signal);
-/// Returns all test signals.
-[[nodiscard]] const std::vector<SignalName>& all_signals();
+/// Names of the test signals.
+inline constexpr auto signal_names = enum_names<SignalName>({{SignalName::tp1, "tp1"},
+                                                             {SignalName::tp2, "tp2"},
+                                                             {SignalName::sp1, "sp1"},
+                                                             {SignalName::sp2, "sp2"},
+                                                             {SignalName::steps, "steps"},
+                                                             {SignalName::hold, "hold"}});
+[[nodiscard]] constexpr std::string_view name_of(SignalName signal) noexcept {
+  return signal_names[signal];
+}
 
 /// Returns the duration of the signal [s].
 [[nodiscard]] double duration_s(SignalName signal);

@@ -49,7 +49,7 @@ class BoardReader {
     map_.name = in.text("name");
     map_.source = in.text("source");
     map_.address_base = static_cast<int>(in.integer("address_base", {0, 1}));
-    map_.word_order = word_order(in);
+    map_.word_order = in.choice("word_order", drivers::word_order_names);
     map_.max_registers = static_cast<std::uint16_t>(
         in.optional_integer("max_registers", {1, drivers::max_read_registers}).value_or(map_.max_registers));
     map_.has_fc23 = in.boolean("fc23");
@@ -69,14 +69,6 @@ class BoardReader {
   }
 
  private:
-  static drivers::WordOrder word_order(MapReader& in) {
-    std::vector<std::string> names;
-    for (int order = 0; order <= static_cast<int>(drivers::WordOrder::low_first_bytes_swapped); ++order) {
-      names.emplace_back(drivers::name_of(static_cast<drivers::WordOrder>(order)));
-    }
-    return static_cast<drivers::WordOrder>(in.choice("word_order", names));
-  }
-
   /// Returns the address to use in Modbus requests for the key `address` of the file.
   std::uint16_t address(MapReader& in, std::int64_t registers) {
     const std::int64_t base = map_.address_base;
@@ -95,11 +87,6 @@ class BoardReader {
                                 with_commas(allowed, [](int one) { return std::to_string(one); }));
     }
     return static_cast<std::uint8_t>(code);
-  }
-
-  drivers::RegisterKind kind(MapReader& in) {
-    return static_cast<drivers::RegisterKind>(
-        in.choice("kind", {"uint16", "int16", "uint32", "int32", "float32"}));
   }
 
   void scaling(MapReader& in, drivers::TerminalBlock& block) {
@@ -132,7 +119,7 @@ class BoardReader {
   void terminals(MapReader& in, drivers::TerminalBlock& block, const std::vector<int>& functions,
                  std::int64_t most_registers) {
     drivers::RegisterBlock& registers = block.registers;
-    registers.kind = kind(in);
+    registers.kind = in.choice("kind", drivers::register_kind_names);
     registers.count = static_cast<std::uint16_t>(
         in.integer("count", {1, static_cast<double>(most_registers / words_of(registers.kind))}));
     registers.function = function(in, functions, "allowed is");
@@ -277,8 +264,7 @@ class BoardReader {
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
     watchdog.safe_electrical = in.numbers("safe" + std::string(suffix_of(map_.outputs.unit)),
                                           map_.outputs.registers.count, {-1000, 1000});
-    watchdog.feed = static_cast<drivers::BoardWatchdog::Feed>(
-        in.choice("fed_by", {"any_request", "functions", "feed_write"}));
+    watchdog.feed = in.choice("fed_by", drivers::feed_names);
     if (watchdog.feed == drivers::BoardWatchdog::Feed::functions) feeding_functions(in);
     if (watchdog.feed == drivers::BoardWatchdog::Feed::feed_write) {
       if (const Node* write = in.child("feed_write", true)) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/enum_table.h"
 #include "control/sequences/sequence_file.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
@@ -209,9 +210,14 @@ std::size_t count_of(const std::vector<document::Problem>& list, const std::stri
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 7> names{"unknown",  "rig",         "board map", "model",
-                                                  "sequence", "PLC gateway", "page"};
-  return names[static_cast<std::size_t>(kind)];
+  static constexpr auto names = enum_names<FileKind>({{FileKind::unknown, "unknown"},
+                                                      {FileKind::rig, "rig"},
+                                                      {FileKind::board_map, "board map"},
+                                                      {FileKind::model, "model"},
+                                                      {FileKind::sequence, "sequence"},
+                                                      {FileKind::plc, "PLC gateway"},
+                                                      {FileKind::web, "page"}});
+  return names[kind];
 }
 
 FileKind kind_of(const document::Document& document, document::Problems& problems) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "base/time.h"
 
 namespace softgrip::rig {
@@ -85,6 +86,10 @@ struct RecorderSettings {
   double sync_interval_s = 5;
   double history_s = 1;
 };
+inline constexpr auto recorder_mode_names =
+    enum_names<RecorderSettings::Mode>({{RecorderSettings::Mode::off, "off"},
+                                        {RecorderSettings::Mode::sequences, "sequences"},
+                                        {RecorderSettings::Mode::always, "always"}});
 
 /// The file of a Unix domain stream socket.
 struct SocketFile {

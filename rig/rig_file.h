@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "control/tick/settings.h"
 #include "document/node.h"
 #include "drivers/board/channel_wiring.h"
@@ -24,6 +25,8 @@ namespace softgrip::rig {
 /// Behaviour of a valve when its power fails: it vents, or it holds the pressure. The daemon reports the
 /// behaviour at start-up.
 enum class PowerLoss : std::uint8_t { vents, holds };
+inline constexpr auto power_loss_names =
+    enum_names<PowerLoss>({{PowerLoss::vents, "vents"}, {PowerLoss::holds, "holds"}});
 
 /// Properties of a channel's valve that do not depend on its wiring.
 struct ValveFacts {

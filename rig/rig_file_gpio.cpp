@@ -85,8 +85,7 @@ void read_gpio(Context& context, MapReader& top) {
   read_keys(reader, rig_keys().gpio, settings);
   // If the rig is read from stored texts, this computer may not have the devices of the rig.
   const auto there = context.stored == nullptr ? drivers::chips_in() : std::vector<ComputerDevice>{};
-  for (std::size_t i = 0; i < drivers::gpio_role_count; ++i)
-    read_line(context, reader, there, static_cast<GpioRole>(i));
+  for (const auto& [role, name] : drivers::gpio_role_names) read_line(context, reader, there, role);
   reader.finish();
   if (settings.lines.empty() && node->kind == Node::Kind::map) {
     top.report("gpio", "`gpio` names no line",

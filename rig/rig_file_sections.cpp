@@ -15,10 +15,9 @@ using document::Node;
 
 void read_safe_actions(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "safe_action");
-  for (std::size_t phase = 0; phase < control::phase_count; ++phase) {
-    const auto name = control::name_of(static_cast<control::Phase>(phase));
-    context.rig.settings.safety.safe_action[phase] =
-        static_cast<control::SafeAction>(reader.choice(name, {"vent", "hold"}));
+  for (const auto& [phase, name] : control::phase_names) {
+    context.rig.settings.safety.safe_action[static_cast<std::size_t>(phase)] =
+        reader.choice(name, control::safe_action_names);
   }
 }
 

@@ -51,15 +51,13 @@ using Event = simulation::SimulatedEvent;
 
 void read_line_fault(MapReader& reader, Event& event) {
   event.kind = Event::Kind::line_fault;
-  using Kind = simulation::LineFault::Kind;
-  event.line.kind = static_cast<Kind>(reader.choice("line", {"free", "blocked", "leaking"}));
+  event.line.kind = reader.choice("line", simulation::line_fault_names);
   simulation::read_own_keys(reader, event.line);
 }
 
 void read_sensor_fault(MapReader& reader, Event& event) {
   event.kind = Event::Kind::sensor_fault;
-  using Kind = simulation::SensorFault::Kind;
-  event.sensor.kind = static_cast<Kind>(reader.choice("sensor", {"good", "stuck", "offset", "out_of_range"}));
+  event.sensor.kind = reader.choice("sensor", simulation::sensor_fault_names);
   simulation::read_own_keys(reader, event.sensor, "value_mm");
 }
 

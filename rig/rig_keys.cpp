@@ -72,8 +72,7 @@ void declare_channel(RigKeys& keys) {
       {"model_health", "map", "map of the rig", "[residual of a healthy finger](#model_health)"},
   };
   using control::FeedforwardSettings;
-  const auto& names = control::feedforward_names;
-  keys.feedforward = {required("feedforward", &FeedforwardSettings::kind, {{names.begin(), names.end()}},
+  keys.feedforward = {required("feedforward", &FeedforwardSettings::kind, control::feedforward_names,
                                "kind of inverse of the model with which the command is computed"),
                       optional("extra_latency_s", &FeedforwardSettings::extra_latency_s, {0, 1},
                                "delay between a command and the output of the board, in addition to the "
@@ -105,7 +104,7 @@ void declare_channel(RigKeys& keys) {
                        "time constant of the derivative filter"),
               required("setpoint_weight", &Pid::setpoint_weight, {0, 1},
                        "weight of the reference in the proportional term"),
-              required("anti_windup", &Pid::anti_windup, {"none", "conditional", "back_calculation"},
+              required("anti_windup", &Pid::anti_windup, control::anti_windup_names,
                        "method against integrator windup"),
               optional("tracking_time_s", &Pid::tracking_time_s, {1e-4, 1000},
                        "time constant of the back-calculation; required with `back_calculation`")};
@@ -131,7 +130,7 @@ void declare_wiring(RigKeys& keys) {
        "lowest and highest signal of a valid reading; `valid_ma` or `valid_kpa` if the terminal is in mA or "
        "kPa"},
       {"error_codes", "list", "none", "signals with which the sensor reports that it cannot measure"}};
-  keys.valve = {required("on_power_loss", &ValveFacts::on_power_loss, {"vents", "holds"},
+  keys.valve = {required("on_power_loss", &ValveFacts::on_power_loss, power_loss_names,
                          "behaviour of the valve without electrical power"),
                 optional("on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
                          "pressure to which a valve with `on_power_loss: vents` goes without power")};
@@ -153,8 +152,8 @@ void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultS
 void declare_safety(RigKeys& keys) {
   keys.safety = {{"safe_action", "map", "",
                   "safe action, `vent` or `hold`, for each phase: `idle`, `closing`, `holding`, `releasing`"},
-                 required("on_emergency_stop", &control::SafetySettings::on_emergency_stop, {"vent", "hold"},
-                          "action after an emergency stop")};
+                 required("on_emergency_stop", &control::SafetySettings::on_emergency_stop,
+                          control::safe_action_names, "action after an emergency stop")};
   keys.commands = {
       required(
           "max_missed_commands", &LoopSettings::max_missed_commands, {1, 1000},
@@ -253,7 +252,7 @@ void declare_service(RigKeys& keys) {
                "size of the prefaulted heap")};
   using Recorder = RecorderSettings;
   keys.recorder = {
-      required("mode", &Recorder::mode, {"off", "sequences", "always"}, "periods that are recorded"),
+      required("mode", &Recorder::mode, recorder_mode_names, "periods that are recorded"),
       required("directory", &Recorder::directory, {}, "folder of the recordings"),
       optional("decimation", &Recorder::decimation, {1, 10'000}, "number of cycles per row of the recording"),
       optional("flush_interval_s", &Recorder::flush_interval_s, {0.001, 0.5},

@@ -24,8 +24,8 @@ void declare_gpio(RigKeys& keys) {
       optional("offset", &Line::offset, {0, 65535},
                "number of the line in the chip; may be given in place of `line`"),
       required("active", &Line::active_low, {"high", "low"}, "level at which the line is active")};
-  keys.gpio_input = {optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"},
-                              "only for inputs: pull resistor of the line")};
+  keys.gpio_input = {
+      optional("bias", &Line::bias, drivers::gpio_bias_names, "only for inputs: pull resistor of the line")};
   keys.gpio_enable = {required("on_fault", &GpioSettings::keeps_enable_on_fault, {"drop", "keep"},
                                "only for `enable`: the output is switched off (`drop`) or stays on (`keep`) "
                                "during a fault other than F501 and F502")};

@@ -1,6 +1,11 @@
 #include "control/elements/fault.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <utility>
+
+#include "base/enum_table.h"
 
 namespace softgrip::control {
 
@@ -106,30 +111,20 @@ constexpr std::array faults{
               "Keep the recording; the cause is a software defect or an unusable model.", "1 cycle"},
 };
 
-struct RefusalInfo {
-  std::string_view id;
-  std::string_view name;
-};
-constexpr std::array<RefusalInfo, 13> refusals{{
-    {"R00", "none"},
-    {"R01", "faulted"},
-    {"R02", "not_idle"},
-    {"R03", "interlock_open"},
-    {"R04", "emergency_stop"},
-    {"R05", "sequence_unfit"},
-    {"R06", "no_valid_reading"},
-    {"R07", "nothing_to_stop"},
-    {"R08", "nothing_to_acknowledge"},
-    {"R09", "cause_persists"},
-    {"R10", "overtaken"},
-    {"R11", "nothing_to_release"},
-    {"R12", "named_start_not_running"},
-}};
-
-const RefusalInfo& info_of(RefusalCode code) noexcept {
-  const auto index = static_cast<std::size_t>(code);
-  return index < refusals.size() ? refusals[index] : refusals[0];
+/// Returns the number of enumerators of FaultCode whose numbers have up to three digits.
+template <std::size_t... number>
+consteval std::size_t count_codes(std::index_sequence<number...>) {
+  constexpr std::array<bool, sizeof...(number)> declared{is_enumerator<static_cast<FaultCode>(number)>()...};
+  return static_cast<std::size_t>(std::count(declared.begin(), declared.end(), true));
 }
+
+/// Returns true if each fault except `none` has one row, and if the rows are in the order of the codes.
+consteval bool complete() {
+  const auto later = [](const FaultInfo& a, const FaultInfo& b) { return a.code >= b.code; };
+  return std::adjacent_find(faults.begin(), faults.end(), later) == faults.end() &&
+         count_codes(std::make_index_sequence<1000>()) == faults.size() + 1;
+}
+static_assert(complete());
 
 }  // namespace
 
@@ -142,13 +137,6 @@ const FaultInfo& info_of(FaultCode code) noexcept {
     if (info.code == code) return info;
   }
   return no_fault;
-}
-
-std::string_view id_of(RefusalCode code) noexcept {
-  return info_of(code).id;
-}
-std::string_view name_of(RefusalCode code) noexcept {
-  return info_of(code).name;
 }
 
 }  // namespace softgrip::control

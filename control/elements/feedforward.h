@@ -2,10 +2,10 @@
 // Defines the settings of the feedforward. The feedforward is the part of the pressure command that the model
 // computes from the reference.
 
-#include <array>
 #include <cstdint>
-#include <string>
+#include <string_view>
 
+#include "base/enum_table.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::control {
@@ -21,10 +21,13 @@ enum class FeedforwardKind : std::uint8_t {
 
 /// Names of the feedforward kinds in rig files and options. The kind `bouc_wen` has the name of the block
 /// that it inverts.
-inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model::BoucWen<double>::info.id,
-                                                                   "full_model", "planned"};
-[[nodiscard]] constexpr std::string_view name_of(FeedforwardKind kind) {
-  return feedforward_names.at(static_cast<std::size_t>(kind));
+inline constexpr auto feedforward_names =
+    enum_names<FeedforwardKind>({{FeedforwardKind::none, "none"},
+                                 {FeedforwardKind::bouc_wen, model::BoucWen<double>::info.id},
+                                 {FeedforwardKind::full_model, "full_model"},
+                                 {FeedforwardKind::planned, "planned"}});
+[[nodiscard]] constexpr std::string_view name_of(FeedforwardKind kind) noexcept {
+  return feedforward_names[kind];
 }
 
 struct FeedforwardSettings {

@@ -4,35 +4,39 @@
 #include <array>
 #include <cstddef>
 
+#include "base/enum_table.h"
+
 namespace softgrip::control {
 namespace {
 struct ResultNames {
   std::string_view title;
   std::string_view name;
 };
-constexpr std::array<ResultNames, 6> results{{
-    {"-", "none"},
-    {"HOLDING", "holding"},
-    {"NO PART", "no_part"},
-    {"PART LOST", "part_lost"},
-    {"RELEASED", "released"},
-    {"ERROR", "error"},
-}};
-constexpr std::array<std::string_view, 3> evidences{"none", "displacement", "pressure (weaker)"};
+constexpr auto results = enum_table<GripResult, ResultNames>({
+    {GripResult::none, {"-", "none"}},
+    {GripResult::holding, {"HOLDING", "holding"}},
+    {GripResult::no_part, {"NO PART", "no_part"}},
+    {GripResult::part_lost, {"PART LOST", "part_lost"}},
+    {GripResult::released, {"RELEASED", "released"}},
+    {GripResult::error, {"ERROR", "error"}},
+});
+constexpr auto evidences = enum_names<GripEvidence>({{GripEvidence::none, "none"},
+                                                     {GripEvidence::displacement, "displacement"},
+                                                     {GripEvidence::pressure, "pressure (weaker)"}});
 }  // namespace
 
 std::string_view title_of(GripResult result) noexcept {
-  return results[static_cast<std::size_t>(result)].title;
+  return results[result].title;
 }
 std::string_view name_of(GripResult result) noexcept {
-  return results[static_cast<std::size_t>(result)].name;
+  return results[result].name;
 }
 std::string_view name_of(GripEvidence evidence) noexcept {
-  return evidences[static_cast<std::size_t>(evidence)];
+  return evidences[evidence];
 }
 
 GripResult overall_result(std::span<const GripResult> results, std::uint32_t members) noexcept {
-  std::array<std::size_t, static_cast<std::size_t>(GripResult::error) + 1> counts{};
+  std::array<std::size_t, control::results.size()> counts{};
   std::size_t fingers = 0;
   for (std::size_t i = 0; i < results.size(); ++i) {
     if ((members >> i & 1U) == 0) continue;

@@ -1,25 +1,31 @@
 #include "control/elements/limit_watch.h"
 
-#include <array>
-#include <cstddef>
+#include "base/enum_table.h"
 
 namespace softgrip::control {
 
-std::string_view name_of(BindingLimit limit) noexcept {
-  constexpr std::array<std::string_view, 6> names{"none",         "rig_pressure", "step_pressure",
-                                                  "step_squeeze", "rig_slew_up",  "rig_slew_down"};
-  return names[static_cast<std::size_t>(limit)];
-}
+namespace {
+struct LimitTexts {
+  std::string_view name;
+  std::string_view words;
+};
+constexpr auto limit_texts = enum_table<BindingLimit, LimitTexts>({
+    {BindingLimit::none, {"none", ""}},
+    {BindingLimit::rig_pressure, {"rig_pressure", "pressure_max_kpa of the rig limits the pressure"}},
+    {BindingLimit::step_pressure, {"step_pressure", "pressure_max_kpa of the step limits the pressure"}},
+    {BindingLimit::step_squeeze, {"step_squeeze", "squeeze_max_kpa of the step limits the pressure"}},
+    {BindingLimit::rig_slew_up,
+     {"rig_slew_up", "slew_up_kpa_per_s of the rig limits the rate of the pressure"}},
+    {BindingLimit::rig_slew_down,
+     {"rig_slew_down", "slew_down_kpa_per_s of the rig limits the rate of the pressure"}},
+});
+}  // namespace
 
+std::string_view name_of(BindingLimit limit) noexcept {
+  return limit_texts[limit].name;
+}
 std::string_view words_of(BindingLimit limit) noexcept {
-  constexpr std::array<std::string_view, 6> words{
-      "",
-      "pressure_max_kpa of the rig limits the pressure",
-      "pressure_max_kpa of the step limits the pressure",
-      "squeeze_max_kpa of the step limits the pressure",
-      "slew_up_kpa_per_s of the rig limits the rate of the pressure",
-      "slew_down_kpa_per_s of the rig limits the rate of the pressure"};
-  return words[static_cast<std::size_t>(limit)];
+  return limit_texts[limit].words;
 }
 
 std::optional<BindingLimit> LimitWatch::observe(double time_s, BindingLimit now) noexcept {

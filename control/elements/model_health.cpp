@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/enum_table.h"
 #include "control/elements/lag_share.h"
 
 namespace softgrip::control {
@@ -18,20 +19,15 @@ constexpr double cap_share = 1.5;
 /// random walk over the threshold.
 constexpr double overshoot = 1.166;
 
+constexpr auto state_names = enum_names<HealthState>({{HealthState::unknown, "unknown"},
+                                                      {HealthState::healthy, "healthy"},
+                                                      {HealthState::suspect, "suspect"},
+                                                      {HealthState::unfit, "unfit"}});
+
 }  // namespace
 
-const char* name_of(HealthState state) noexcept {
-  switch (state) {
-    case HealthState::unknown:
-      return "unknown";
-    case HealthState::healthy:
-      return "healthy";
-    case HealthState::suspect:
-      return "suspect";
-    case HealthState::unfit:
-      return "unfit";
-  }
-  return "unknown";
+std::string_view name_of(HealthState state) noexcept {
+  return state_names[state];
 }
 
 double cusum_run_length(double allowance, double threshold) noexcept {

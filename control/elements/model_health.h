@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace softgrip::control {
 
@@ -24,7 +25,8 @@ enum class HealthState : std::uint8_t {
   suspect,  ///< the residual drifts more than that of a healthy model; the model should be fitted again soon
   unfit,    ///< the residual exceeds the tolerance of grip detection and of the feedforward, unfit_mm
 };
-[[nodiscard]] const char* name_of(HealthState state) noexcept;
+/// Returns the name of a state: "unknown", "healthy", "suspect" or "unfit".
+[[nodiscard]] std::string_view name_of(HealthState state) noexcept;
 
 /// Properties of the residual of a healthy model, and the limits for warnings. The defaults were tested on
 /// the simulated finger with models whose parameters are wrong. The test used 40 models for each size of the

@@ -11,6 +11,8 @@
 
 #include <cstdint>
 
+#include "base/enum_table.h"
+
 namespace softgrip::control {
 
 /// Method that prevents integrator windup. Windup occurs while the limits keep the command away from the
@@ -21,6 +23,12 @@ enum class AntiWindup : std::uint8_t {
   back_calculation,  ///< the difference between request and limited command drives the integrator back within
                      ///< tracking_time_s
 };
+
+/// Names of the methods in rig files.
+inline constexpr auto anti_windup_names =
+    enum_names<AntiWindup>({{AntiWindup::none, "none"},
+                            {AntiWindup::conditional, "conditional"},
+                            {AntiWindup::back_calculation, "back_calculation"}});
 
 struct PidSettings {
   double kp_kpa_per_mm = 0;

@@ -39,11 +39,7 @@ void read_profile(MapReader& map, const document::Document& document, document::
     map.report("signal", "a pressure step has points or a signal, not both");
   }
   if (has_signal) {
-    std::vector<std::string> signals;
-    for (const model::SignalName signal : model::all_signals()) {
-      signals.emplace_back(model::name_of(signal));
-    }
-    profile.signal = model::all_signals()[map.choice("signal", signals)];
+    profile.signal = map.choice("signal", model::signal_names);
     profile.scale = map.optional_number("scale", {0.01, 20}).value_or(1);
   }
   if (has_points || !has_signal) read_points(map, document, problems, profile.points);

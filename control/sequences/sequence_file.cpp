@@ -29,13 +29,6 @@ using step_ranges::window_s;
 
 constexpr std::size_t most_steps = 200;
 
-template <class Enum>
-std::vector<std::string> names(std::initializer_list<Enum> values) {
-  std::vector<std::string> list;
-  for (const Enum value : values) list.emplace_back(name_of(value));
-  return list;
-}
-
 /// Reads the parts of one sequence file. After a problem, each function reports the problem and continues
 /// with the next key.
 class FileReader {
@@ -50,9 +43,7 @@ class FileReader {
     result.name = map.text("name");
     result.about = map.optional_text("about").value_or("");
     result.channels = channel_names(map);
-    if (const auto choice = map.optional_choice("interlock", {"start", "always"})) {
-      result.interlock = *choice == 0 ? Interlock::start : Interlock::always;
-    }
+    result.interlock = map.optional_choice("interlock", interlock_names).value_or(result.interlock);
     static_cast<void>(map.child("parameters", false));  // read_parameters() has already read this key
     const auto items = map.sequence("steps", true);
     if (items.size() > most_steps) {
@@ -87,9 +78,7 @@ class FileReader {
   }
 
   Step step(const Node& node, std::size_t number) {
-    static const std::vector<std::string> kinds =
-        names({StepKind::move, StepKind::grip, StepKind::hold, StepKind::release, StepKind::track,
-               StepKind::pressure});
+    static const std::vector<std::string> kinds = step_names.names();
     Step result;
     result.at = node.at;
     const std::string shape =
@@ -214,10 +203,11 @@ class FileReader {
   /// Reads the action on contact. If a contact makes the step fail, the file must also give on_fail. If the
   /// move has a tolerance, tolerance() has already read on_fail.
   void on_contact(MapReader& map, Step& step, OnContact otherwise) {
-    const auto choice = map.optional_choice(
-        "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));
+    constexpr std::array permitted{OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore};
+    const auto choice =
+        map.optional_choice("on_contact", on_contact_names, std::span<const OnContact>(permitted));
     step.on_contact_stated = choice.has_value();
-    step.on_contact = choice ? static_cast<OnContact>(*choice) : otherwise;
+    step.on_contact = choice.value_or(otherwise);
     const bool says_how = step.tolerance_mm.has_value();
     if (step.on_contact != OnContact::fail || says_how) return;
     step.retries = retries(map);
@@ -254,8 +244,7 @@ class FileReader {
     const Node* node = map.child("verify", true);
     if (node == nullptr) return result;
     MapReader inner(document_, *node, problems_, "verify");
-    result.by = static_cast<VerifyBy>(
-        inner.choice("by", names({VerifyBy::detection, VerifyBy::position, VerifyBy::pressure})));
+    result.by = inner.choice("by", verify_by_names);
     result.window_s = inner.number("window_s", window_s);
     if (result.by == VerifyBy::pressure) {
       pressure_bound(inner, result);
@@ -300,10 +289,7 @@ class FileReader {
 
   /// Reads the action after a failed step. The key is required, because a default action would not be visible
   /// in the file.
-  OnFail on_fail(MapReader& map) {
-    return static_cast<OnFail>(map.choice(
-        "on_fail", names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on})));
-  }
+  OnFail on_fail(MapReader& map) { return map.choice("on_fail", on_fail_names); }
 
   void release(MapReader& map, Step& step) {
     step.target.quantity = Target::Quantity::pressure_kpa;

@@ -1,19 +1,27 @@
 #include "control/tick/rig_controller.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "base/enum_table.h"
+
 namespace softgrip::control {
 
 namespace {
-constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "resynchronising",
-                                                      "running",  "stopping", "faulted"};
-constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
+constexpr auto state_names = enum_names<State>({{State::starting, "starting"},
+                                                {State::idle, "idle"},
+                                                {State::resynchronising, "resynchronising"},
+                                                {State::running, "running"},
+                                                {State::stopping, "stopping"},
+                                                {State::faulted, "faulted"}});
+constexpr auto end_names = enum_names<SequenceEnd>({{SequenceEnd::done, "done"},
+                                                    {SequenceEnd::failed, "failed"},
+                                                    {SequenceEnd::stopped, "stopped"},
+                                                    {SequenceEnd::faulted, "faulted"}});
 ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, double preview_s) {
   return ChannelPlayer(
       {rig.detection.margin_mm, resting_kpa(channel.limits), preview_s, channel.displacement_used});
@@ -21,10 +29,10 @@ ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, 
 }  // namespace
 
 std::string_view name_of(State state) noexcept {
-  return state_names[static_cast<std::size_t>(state)];
+  return state_names[state];
 }
 std::string_view name_of(SequenceEnd end) noexcept {
-  return end_names[static_cast<std::size_t>(end)];
+  return end_names[end];
 }
 
 RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& settings)

@@ -51,26 +51,6 @@ std::uint64_t rig_key(const RigSettings& settings) noexcept {
   return key.value();
 }
 
-std::string_view name_of(StepKind kind) noexcept {
-  constexpr std::array<std::string_view, 6> names{"move", "grip", "hold", "release", "track", "pressure"};
-  return names[static_cast<std::size_t>(kind)];
-}
-
-std::string_view name_of(OnFail action) noexcept {
-  constexpr std::array<std::string_view, 5> names{"vent", "hold", "abort", "release", "continue"};
-  return names[static_cast<std::size_t>(action)];
-}
-
-std::string_view name_of(OnContact action) noexcept {
-  constexpr std::array<std::string_view, 6> names{"hold", "grip", "fail", "ignore", "squeeze", "close"};
-  return names[static_cast<std::size_t>(action)];
-}
-
-std::string_view name_of(VerifyBy by) noexcept {
-  constexpr std::array<std::string_view, 3> names{"detection", "position", "pressure"};
-  return names[static_cast<std::size_t>(by)];
-}
-
 double cycle_s(const Profile& profile) noexcept {
   if (profile.signal) return model::duration_s(*profile.signal);
   return profile.points.empty() ? 0 : profile.points.back().time_s;

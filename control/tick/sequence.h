@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "control/feedforward/pressure_plan.h"
 #include "control/tick/parameter.h"
 #include "control/tick/settings.h"
@@ -38,7 +39,15 @@ enum class StepKind : std::uint8_t {
   track,     ///< follows a displacement over time with feedback; used in studies
   pressure,  ///< follows a pressure over time without feedback; used in experiments
 };
-[[nodiscard]] std::string_view name_of(StepKind kind) noexcept;
+inline constexpr auto step_names = enum_names<StepKind>({{StepKind::move, "move"},
+                                                         {StepKind::grip, "grip"},
+                                                         {StepKind::hold, "hold"},
+                                                         {StepKind::release, "release"},
+                                                         {StepKind::track, "track"},
+                                                         {StepKind::pressure, "pressure"}});
+[[nodiscard]] constexpr std::string_view name_of(StepKind kind) noexcept {
+  return step_names[kind];
+}
 
 /// The action after a step that has failed and has no retries left.
 enum class OnFail : std::uint8_t {
@@ -48,8 +57,15 @@ enum class OnFail : std::uint8_t {
   release,   ///< the sequence continues with the next release step; without such a step, the action is vent
   carry_on,  ///< `continue` in the file: the sequence continues with its next step
 };
-/// Returns the name of an action in the file: "vent", "hold", "abort", "release" or "continue".
-[[nodiscard]] std::string_view name_of(OnFail action) noexcept;
+/// Names of the actions in sequence files.
+inline constexpr auto on_fail_names = enum_names<OnFail>({{OnFail::vent, "vent"},
+                                                          {OnFail::hold, "hold"},
+                                                          {OnFail::abort, "abort"},
+                                                          {OnFail::release, "release"},
+                                                          {OnFail::carry_on, "continue"}});
+[[nodiscard]] constexpr std::string_view name_of(OnFail action) noexcept {
+  return on_fail_names[action];
+}
 
 /// The action when a finger meets an object during the motion of its step.
 enum class OnContact : std::uint8_t {
@@ -63,8 +79,16 @@ enum class OnContact : std::uint8_t {
   close,    ///< for a grip without squeeze_kpa: the motion continues to its target while the feedback stays
             ///< constant (not a value in files)
 };
-/// Returns the name of an action on contact: "hold", "grip", "fail", "ignore", "squeeze" or "close".
-[[nodiscard]] std::string_view name_of(OnContact action) noexcept;
+/// Names of the actions on contact, in sequence files and events.
+inline constexpr auto on_contact_names = enum_names<OnContact>({{OnContact::hold, "hold"},
+                                                                {OnContact::grip, "grip"},
+                                                                {OnContact::fail, "fail"},
+                                                                {OnContact::ignore, "ignore"},
+                                                                {OnContact::squeeze, "squeeze"},
+                                                                {OnContact::close, "close"}});
+[[nodiscard]] constexpr std::string_view name_of(OnContact action) noexcept {
+  return on_contact_names[action];
+}
 
 /// The criterion by which a grip is verified.
 enum class VerifyBy : std::uint8_t {
@@ -72,7 +96,11 @@ enum class VerifyBy : std::uint8_t {
   position,   ///< the displacement is between a lower and an upper value
   pressure,   ///< weaker criterion: the measured pressure has reached a bound
 };
-[[nodiscard]] std::string_view name_of(VerifyBy by) noexcept;
+inline constexpr auto verify_by_names = enum_names<VerifyBy>(
+    {{VerifyBy::detection, "detection"}, {VerifyBy::position, "position"}, {VerifyBy::pressure, "pressure"}});
+[[nodiscard]] constexpr std::string_view name_of(VerifyBy by) noexcept {
+  return verify_by_names[by];
+}
 
 /// Target of a ramp. Either the duration `duration_s` or the speed `speed` [unit of the target per s]
 /// determines the time of the ramp.
@@ -190,6 +218,9 @@ enum class Interlock : std::uint8_t {
   start,   ///< while the interlock is open, a start is refused
   always,  ///< while the interlock is open, a start is refused; when it opens, a running sequence is stopped
 };
+
+inline constexpr auto interlock_names =
+    enum_names<Interlock>({{Interlock::start, "start"}, {Interlock::always, "always"}});
 
 /// A sequence as written in the file.
 struct Sequence {

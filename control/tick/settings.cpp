@@ -84,15 +84,6 @@ void check_faults(const FaultSettings& faults, Texts& problems) {
 
 }  // namespace
 
-std::string_view name_of(Phase phase) noexcept {
-  constexpr std::array<std::string_view, phase_count> names{"idle", "closing", "holding", "releasing"};
-  return names[static_cast<std::size_t>(phase)];
-}
-
-std::string_view name_of(SafeAction action) noexcept {
-  return action == SafeAction::vent ? "vent" : "hold";
-}
-
 std::vector<std::string> settings_problems(const RigSettings& settings) {
   Texts problems;
   require(positive(settings.rate_hz), problems, "rate_hz must be above 0");

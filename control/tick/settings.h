@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "control/elements/feedforward.h"
 #include "control/elements/limits.h"
 #include "control/elements/model_health.h"
@@ -49,9 +50,15 @@ enum class Phase : std::uint8_t {
   holding,    ///< a hold step is in progress
   releasing,  ///< a release step is in progress
 };
-inline constexpr std::size_t phase_count = 4;
-/// Returns "idle", "closing", "holding" or "releasing". These are the keys of `safe_action` in the rig file.
-[[nodiscard]] std::string_view name_of(Phase phase) noexcept;
+/// Names of the phases: the keys of `safe_action` in the rig file.
+inline constexpr auto phase_names = enum_names<Phase>({{Phase::idle, "idle"},
+                                                       {Phase::closing, "closing"},
+                                                       {Phase::holding, "holding"},
+                                                       {Phase::releasing, "releasing"}});
+inline constexpr std::size_t phase_count = phase_names.size();
+[[nodiscard]] constexpr std::string_view name_of(Phase phase) noexcept {
+  return phase_names[phase];
+}
 
 /// The action on the outputs when the motion must end.
 enum class SafeAction : std::uint8_t {
@@ -59,8 +66,12 @@ enum class SafeAction : std::uint8_t {
          ///< loop ends
   hold,  ///< the outputs keep the last command
 };
-/// Returns the name of an action: "vent" or "hold".
-[[nodiscard]] std::string_view name_of(SafeAction action) noexcept;
+/// Names of the actions in rig files.
+inline constexpr auto safe_action_names =
+    enum_names<SafeAction>({{SafeAction::vent, "vent"}, {SafeAction::hold, "hold"}});
+[[nodiscard]] constexpr std::string_view name_of(SafeAction action) noexcept {
+  return safe_action_names[action];
+}
 
 /// Settings of the grip detection, for all channels.
 struct DetectionSettings {

@@ -1,5 +1,6 @@
 #include "daemon/loop/real_time.h"
 
+#include "base/enum_table.h"
 #include "base/text.h"
 
 #include <fcntl.h>
@@ -266,15 +267,11 @@ RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
 }  // namespace
 
 std::string_view name_of(Outcome outcome) noexcept {
-  switch (outcome) {
-    case Outcome::verified:
-      return "verified";
-    case Outcome::failed:
-      return "failed";
-    case Outcome::not_asked:
-      return "not asked for";  // words-ok: a documented value
-  }
-  return "?";
+  static constexpr auto names =
+      enum_names<Outcome>({{Outcome::verified, "verified"},
+                           {Outcome::failed, "failed"},
+                           {Outcome::not_asked, "not asked for"}});  // words-ok: a documented value
+  return names[outcome];
 }
 
 void RealTimeReport::append(const RealTimeReport& other) {

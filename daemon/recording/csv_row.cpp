@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/enum_table.h"
+
 namespace softgrip::daemon {
 
 namespace {
@@ -135,10 +137,14 @@ void CsvRows::append(std::string& text, const Record& record, Nanoseconds begin)
 }
 
 std::string_view name_of(model::Validity validity) noexcept {
-  constexpr std::array<std::string_view, 7> names{"valid",  "none_yet", "out_of_range", "sensor_error",
-                                                  "jumped", "frozen",   "stale"};
-  static_assert(static_cast<std::size_t>(model::Validity::stale) + 1 == names.size());
-  return names[static_cast<std::size_t>(validity)];
+  static constexpr auto names = enum_names<model::Validity>({{model::Validity::valid, "valid"},
+                                                             {model::Validity::none_yet, "none_yet"},
+                                                             {model::Validity::out_of_range, "out_of_range"},
+                                                             {model::Validity::sensor_error, "sensor_error"},
+                                                             {model::Validity::jumped, "jumped"},
+                                                             {model::Validity::frozen, "frozen"},
+                                                             {model::Validity::stale, "stale"}});
+  return names[validity];
 }
 
 }  // namespace softgrip::daemon

@@ -1,13 +1,13 @@
 #include "daemon/recording/event_log.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "base/enum_table.h"
 #include "base/numbers.h"
 #include "control/elements/fault.h"
 #include "control/elements/model_health.h"
@@ -29,37 +29,40 @@ struct Words {
 };
 using enum Severity;
 
-/// Texts of the bus events, in the order of BusEvent::Kind.
-constexpr std::array<Words, 7> bus_words{{
-    {"bus_connected", information, "Connected to the board: the board responds."},
-    {"bus_failed", error, ""},
-    {"bus_recovered", information, "Communication with the board restored."},
-    {"loop_silent", error,
-     "Command time-out: the control loop sends no commands, so the safe outputs are written."},
-    {"loop_back", information,
-     "Commands resumed: the commands of the control loop are written to the board again."},
-    {"another_client", warning, ""},
-    {"bus_not_connected", error, ""},
-}};
-static_assert(static_cast<std::size_t>(BusEvent::Kind::not_connected) + 1 == bus_words.size());
+constexpr auto bus_words = enum_table<BusEvent::Kind, Words>({
+    {BusEvent::Kind::connected,
+     {"bus_connected", information, "Connected to the board: the board responds."}},
+    {BusEvent::Kind::failed, {"bus_failed", error, ""}},
+    {BusEvent::Kind::recovered, {"bus_recovered", information, "Communication with the board restored."}},
+    {BusEvent::Kind::loop_silent,
+     {"loop_silent", error,
+      "Command time-out: the control loop sends no commands, so the safe outputs are written."}},
+    {BusEvent::Kind::loop_back,
+     {"loop_back", information,
+      "Commands resumed: the commands of the control loop are written to the board again."}},
+    {BusEvent::Kind::another_client, {"another_client", warning, ""}},
+    {BusEvent::Kind::not_connected, {"bus_not_connected", error, ""}},
+});
 
-/// Texts of the panel events, in the order of PanelEvent::Kind.
-constexpr std::array<Words, 8> panel_words{{
-    {"emergency_stop_pressed", warning, "The emergency stop is pressed."},
-    {"emergency_stop_released", information,
-     "The emergency stop is released. `softgrip acknowledge` makes the rig ready."},
-    {"part_in_position", information, "A part is in position."},
-    {"part_away", information, "No part is in position."},
-    {"enable_on", information, "The enable output is on."},
-    {"enable_off", information, "The enable output is off."},
-    {"loop_hangs", error, "Control loop stalled: the enable output was switched off."},
-    {"gpio_lost", error, "The GPIO chip failed: its lines are not available until the daemon restarts."},
-}};
-static_assert(static_cast<std::size_t>(PanelEvent::Kind::gpio_lost) + 1 == panel_words.size());
+constexpr auto panel_words = enum_table<PanelEvent::Kind, Words>({
+    {PanelEvent::Kind::emergency_stop_pressed,
+     {"emergency_stop_pressed", warning, "The emergency stop is pressed."}},
+    {PanelEvent::Kind::emergency_stop_released,
+     {"emergency_stop_released", information,
+      "The emergency stop is released. `softgrip acknowledge` makes the rig ready."}},
+    {PanelEvent::Kind::part_in_position, {"part_in_position", information, "A part is in position."}},
+    {PanelEvent::Kind::part_away, {"part_away", information, "No part is in position."}},
+    {PanelEvent::Kind::enable_on, {"enable_on", information, "The enable output is on."}},
+    {PanelEvent::Kind::enable_off, {"enable_off", information, "The enable output is off."}},
+    {PanelEvent::Kind::loop_hangs,
+     {"loop_hangs", error, "Control loop stalled: the enable output was switched off."}},
+    {PanelEvent::Kind::gpio_lost,
+     {"gpio_lost", error, "The GPIO chip failed: its lines are not available until the daemon restarts."}},
+});
 
 template <class Table, class Which>
 EventEntry entry_of(const Table& table, Which which) {
-  const Words& words = table[static_cast<std::size_t>(which)];
+  const Words& words = table[which];
   EventEntry entry;
   entry.kind = words.kind;
   entry.severity = words.severity;
@@ -230,35 +233,33 @@ struct Telling {
   std::string_view kind;
   void (*describe)(const Event& event, const Sequence* sequence, EventEntry& entry);
 };
-/// Functions that describe the events, in the order of control::Event::Kind.
-constexpr std::array<Telling, 19> tellings{{
-    {"state_changed", describe_state},
-    {"fault_latched", describe_fault},
-    {"fault_acknowledged", describe_acknowledged},
-    {"sequence_started", describe_start},
-    {"sequence_finished", describe_end},
-    {"step_started", describe_step},
-    {"grip_result", describe_result},
-    {"request_refused", describe_refusal},
-    {"model_health_changed", describe_health},
-    {"reading_invalid", describe_reading},
-    {"reading_valid", describe_reading},
-    {"contact", describe_contact},
-    {"limit_binds", describe_limit},
-    {"limit_free", describe_limit},
-    {"release_asked", describe_release},
-    {"reading_unsteady", describe_unsteady},
-    {"reading_steady", describe_unsteady},
-    {"start_checked", describe_check},
-    {"not_at_rest", describe_not_at_rest},
-}};
-static_assert(static_cast<std::size_t>(Kind::not_at_rest) + 1 == tellings.size());
+constexpr auto tellings = enum_table<Kind, Telling>({
+    {Kind::state_changed, {"state_changed", describe_state}},
+    {Kind::fault_latched, {"fault_latched", describe_fault}},
+    {Kind::fault_acknowledged, {"fault_acknowledged", describe_acknowledged}},
+    {Kind::sequence_started, {"sequence_started", describe_start}},
+    {Kind::sequence_finished, {"sequence_finished", describe_end}},
+    {Kind::step_started, {"step_started", describe_step}},
+    {Kind::grip_result, {"grip_result", describe_result}},
+    {Kind::request_refused, {"request_refused", describe_refusal}},
+    {Kind::model_health_changed, {"model_health_changed", describe_health}},
+    {Kind::reading_invalid, {"reading_invalid", describe_reading}},
+    {Kind::reading_valid, {"reading_valid", describe_reading}},
+    {Kind::contact, {"contact", describe_contact}},
+    {Kind::limit_binds, {"limit_binds", describe_limit}},
+    {Kind::limit_free, {"limit_free", describe_limit}},
+    {Kind::release_asked, {"release_asked", describe_release}},
+    {Kind::reading_unsteady, {"reading_unsteady", describe_unsteady}},
+    {Kind::reading_steady, {"reading_steady", describe_unsteady}},
+    {Kind::start_checked, {"start_checked", describe_check}},
+    {Kind::not_at_rest, {"not_at_rest", describe_not_at_rest}},
+});
 
 }  // namespace
 
 EventEntry describe(const Event& event, const std::vector<std::string>& channel_names,
                     const control::PreparedSequence* sequence) {
-  const Telling& telling = tellings[static_cast<std::size_t>(event.kind)];
+  const Telling& telling = tellings[event.kind];
   EventEntry entry;
   entry.kind = telling.kind;
   entry.request = event.request;
@@ -310,8 +311,9 @@ EventEntry describe(const PanelEvent& event) {
 }
 
 std::string_view name_of(Severity severity) noexcept {
-  constexpr std::array<std::string_view, 3> names{"information", "warning", "error"};
-  return names[static_cast<std::size_t>(severity)];
+  static constexpr auto names = enum_names<Severity>(
+      {{Severity::information, "information"}, {Severity::warning, "warning"}, {Severity::error, "error"}});
+  return names[severity];
 }
 
 std::uint64_t EventLog::add(EventEntry entry) {

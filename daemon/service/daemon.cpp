@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/enum_table.h"
 #include "base/sha256.h"
 #include "base/version.h"
 #include "daemon/recording/run_folder.h"
@@ -37,19 +38,10 @@ std::size_t records_of(const control::RigSettings& settings) {
   return std::clamp(static_cast<std::size_t>(rows), fewest_records, most_records);
 }
 
-const char* name_of(rig::InputFile::Role role) {
-  switch (role) {
-    case rig::InputFile::Role::rig:
-      return "rig";
-    case rig::InputFile::Role::board:
-      return "board";
-    case rig::InputFile::Role::model:
-      return "model";
-    case rig::InputFile::Role::plant:
-      return "plant";
-  }
-  return "?";
-}
+constexpr auto input_file_names = enum_names<rig::InputFile::Role>({{rig::InputFile::Role::rig, "rig"},
+                                                                    {rig::InputFile::Role::board, "board"},
+                                                                    {rig::InputFile::Role::model, "model"},
+                                                                    {rig::InputFile::Role::plant, "plant"}});
 
 bool measures_pressure(const rig::RigFile& rig) {
   const auto& channels = rig.settings.channels;
@@ -67,7 +59,7 @@ Provenance provenance_of(const rig::RigFile& rig, const DaemonOptions& options) 
   provenance.software_version = software_version();
   provenance.rig = rig.name;
   for (const rig::InputFile& file : rig.inputs) {
-    provenance.files.push_back({name_of(file.role), file.path, sha256(file.text)});
+    provenance.files.push_back({std::string(input_file_names[file.role]), file.path, sha256(file.text)});
   }
   for (const control::ChannelSettings& channel : rig.settings.channels) {
     provenance.channel_names.push_back(channel.name);

@@ -92,9 +92,9 @@ std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
   text += bus_lines(rig, board);
   text += watchdog_line(rig, board, program);
   text += "safe action:";
-  for (std::size_t i = 0; i < control::phase_count; ++i) {
-    text += fmt::format("{} {} {}", i == 0 ? "" : ",", control::name_of(static_cast<control::Phase>(i)),
-                        control::name_of(rig.settings.safety.safe_action[i]));
+  for (const auto& [phase, name] : control::phase_names) {
+    const control::SafeAction action = rig.settings.safety.safe_action[static_cast<std::size_t>(phase)];
+    text += fmt::format("{} {} {}", phase == control::Phase::idle ? "" : ",", name, control::name_of(action));
   }
   text += "\n";
   for (std::size_t i = 0; i < rig.settings.channels.size(); ++i) {

@@ -13,6 +13,7 @@
 
 #include <tl/expected.hpp>
 
+#include "base/enum_table.h"
 #include "control/tick/parameter.h"
 
 namespace softgrip::daemon {
@@ -21,9 +22,10 @@ enum class Role : std::uint8_t {
   look,     ///< read-only; for clients of the socket `socket: look:` of the rig file
   operate,  ///< may move the gripper; for clients of the socket `socket: path:` of the rig file
 };
-/// Returns the name of a role: "look" or "operate".
+/// Names of the roles in replies.
+inline constexpr auto role_names = enum_names<Role>({{Role::look, "look"}, {Role::operate, "operate"}});
 [[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {
-  return role == Role::look ? "look" : "operate";
+  return role_names[role];
 }
 
 /// Version of the socket API that this daemon implements.

@@ -31,7 +31,8 @@ enum class BusStatus : std::uint8_t {
   closed_at_once,    ///< the board, or a gateway in front of the board, accepted the connection and closed it
                      ///< before the first response
 };
-[[nodiscard]] const char* name_of(BusStatus status) noexcept;
+/// Returns the name of a result: "ok", "disconnected", "timed_out" ...
+[[nodiscard]] std::string_view name_of(BusStatus status) noexcept;
 
 /// An I/O board. One thread calls all functions: the bus thread, or the control loop in virtual time.
 class Board {

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/enum_table.h"
+
 namespace softgrip::drivers {
 
 /// The line through (x0, y0) and (x1, y1). For example, {4, 85, 20, 15} describes a sensor with 4-20 mA whose
@@ -44,8 +46,15 @@ enum class WordOrder : std::uint8_t {
   high_first_bytes_swapped,
   low_first_bytes_swapped,
 };
-/// Returns the name of a word order in the board file.
-[[nodiscard]] std::string_view name_of(WordOrder order) noexcept;
+/// Names of the word orders in board files.
+inline constexpr auto word_order_names =
+    enum_names<WordOrder>({{WordOrder::high_first, "high_first"},
+                           {WordOrder::low_first, "low_first"},
+                           {WordOrder::high_first_bytes_swapped, "high_first_bytes_swapped"},
+                           {WordOrder::low_first_bytes_swapped, "low_first_bytes_swapped"}});
+[[nodiscard]] constexpr std::string_view name_of(WordOrder order) noexcept {
+  return word_order_names[order];
+}
 /// The unit of the quantity at a terminal. A pressure generator has an air port as terminal, with the unit
 /// kPa.
 enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
@@ -54,8 +63,15 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
   return kind == RegisterKind::uint16 || kind == RegisterKind::int16 ? 1 : 2;
 }
-/// Returns the name of a kind in the board file: "uint16" ... "float32".
-[[nodiscard]] std::string_view name_of(RegisterKind kind) noexcept;
+/// Names of the kinds in board files.
+inline constexpr auto register_kind_names = enum_names<RegisterKind>({{RegisterKind::uint16, "uint16"},
+                                                                      {RegisterKind::int16, "int16"},
+                                                                      {RegisterKind::uint32, "uint32"},
+                                                                      {RegisterKind::int32, "int32"},
+                                                                      {RegisterKind::float32, "float32"}});
+[[nodiscard]] constexpr std::string_view name_of(RegisterKind kind) noexcept {
+  return register_kind_names[kind];
+}
 /// Returns the symbol of a unit: "V", "mA" or "kPa".
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
@@ -168,6 +184,11 @@ struct BoardWatchdog {
     return kind != Kind::none && (feed == Feed::any_request || (feed == Feed::functions && reads));
   }
 };
+/// Names of the ways to feed a watchdog, in board files.
+inline constexpr auto feed_names =
+    enum_names<BoardWatchdog::Feed>({{BoardWatchdog::Feed::any_request, "any_request"},
+                                     {BoardWatchdog::Feed::functions, "functions"},
+                                     {BoardWatchdog::Feed::feed_write, "feed_write"}});
 
 /// The contents of a board file.
 struct BoardMap {

@@ -17,21 +17,35 @@
 #include <tl/expected.hpp>
 
 #include "base/computer_device.h"
+#include "base/enum_table.h"
 #include "model/reading.h"
 
 namespace softgrip::drivers {
 
 /// The purpose of a line. A rig has at most one line for each purpose.
 enum class GpioRole : std::uint8_t { emergency_stop, part_in_position, enable, ready_lamp, fault_lamp };
-inline constexpr std::size_t gpio_role_count = 5;
-/// Returns the name of a purpose in the rig file, for example "emergency_stop".
-[[nodiscard]] std::string_view name_of(GpioRole role) noexcept;
+/// Names of the purposes in rig files.
+inline constexpr auto gpio_role_names =
+    enum_names<GpioRole>({{GpioRole::emergency_stop, "emergency_stop"},
+                          {GpioRole::part_in_position, "part_in_position"},
+                          {GpioRole::enable, "enable"},
+                          {GpioRole::ready_lamp, "ready_lamp"},
+                          {GpioRole::fault_lamp, "fault_lamp"}});
+inline constexpr std::size_t gpio_role_count = gpio_role_names.size();
+[[nodiscard]] constexpr std::string_view name_of(GpioRole role) noexcept {
+  return gpio_role_names[role];
+}
 [[nodiscard]] constexpr bool is_input(GpioRole role) noexcept {
   return role == GpioRole::emergency_stop || role == GpioRole::part_in_position;
 }
 
 /// The setting of the pull resistor inside the GPIO chip.
 enum class GpioBias : std::uint8_t { as_is, disabled, pull_up, pull_down };
+/// Names of the settings in rig files.
+inline constexpr auto gpio_bias_names = enum_names<GpioBias>({{GpioBias::as_is, "as_is"},
+                                                              {GpioBias::disabled, "disabled"},
+                                                              {GpioBias::pull_up, "pull_up"},
+                                                              {GpioBias::pull_down, "pull_down"}});
 
 struct GpioLineSettings {
   GpioRole role = GpioRole::emergency_stop;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "document/node.h"
 #include "document/problem.h"
 #include "rig/plc_file/register_map.h"
@@ -30,6 +31,10 @@ struct Recipe {
 
 /// Action of the gateway if the PLC stops responding.
 enum class Reaction : std::uint8_t { nothing, stop, vent, release };
+inline constexpr auto reaction_names = enum_names<Reaction>({{Reaction::nothing, "nothing"},
+                                                             {Reaction::stop, "stop"},
+                                                             {Reaction::vent, "vent"},
+                                                             {Reaction::release, "release"}});
 
 /// The contents of the gateway file. file_keys() describes the members.
 struct Settings {

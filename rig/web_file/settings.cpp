@@ -35,8 +35,7 @@ const WebKeys& web_keys() {
         "host names under which clients may open the page, in addition to `localhost` and numeric "
         "addresses"}},
       {optional("tokens", &S::tokens, {}, "file that contains the tokens"),
-       required("without_token", &S::without_token, {"none", "look", "operate"},
-                "role of a client without a token"),
+       required("without_token", &S::without_token, role_names, "role of a client without a token"),
        optional("session_idle_s", &S::session_idle_s, {1, 86400},
                 "time without requests and without an open page after which a session ends"),
        optional("session_s", &S::session_s, {1, 604800}, "time after which every session ends")}};

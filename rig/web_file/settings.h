@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "document/node.h"
 #include "document/problem.h"
 
@@ -19,6 +20,8 @@ namespace softgrip::web {
 
 /// Permissions of a client, in increasing order.
 enum class Role : std::uint8_t { none, look, operate };
+inline constexpr auto role_names =
+    enum_names<Role>({{Role::none, "none"}, {Role::look, "look"}, {Role::operate, "operate"}});
 
 /// The contents of the file. file_keys() describes the members.
 struct Settings {

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "base/enum_table.h"
 #include "document/reader.h"
 #include "drivers/modbus/modbus_request.h"
 #include "simulation/plant/fault_reader.h"
@@ -11,12 +12,27 @@
 namespace softgrip::simulation {
 namespace {
 
-constexpr std::array<std::string_view, 21> kind_names{
-    "lost_request",   "no_reply",       "late_reply",          "dripped_reply", "cut_reply",
-    "repeated_reply", "wrong_unit",     "wrong_transaction",   "wrong_length",  "exception_reply",
-    "settling",       "few_registers",  "stray_bytes",         "disconnect",    "ignored_write",
-    "sensor_stuck",   "sensor_jumping", "sensor_out_of_range", "line_blocked",  "line_leaking",
-    "object_removed"};
+constexpr auto kind_names = enum_names<FaultKind>({{FaultKind::lost_request, "lost_request"},
+                                                   {FaultKind::no_reply, "no_reply"},
+                                                   {FaultKind::late_reply, "late_reply"},
+                                                   {FaultKind::dripped_reply, "dripped_reply"},
+                                                   {FaultKind::cut_reply, "cut_reply"},
+                                                   {FaultKind::repeated_reply, "repeated_reply"},
+                                                   {FaultKind::wrong_unit, "wrong_unit"},
+                                                   {FaultKind::wrong_transaction, "wrong_transaction"},
+                                                   {FaultKind::wrong_length, "wrong_length"},
+                                                   {FaultKind::exception_reply, "exception_reply"},
+                                                   {FaultKind::settling, "settling"},
+                                                   {FaultKind::few_registers, "few_registers"},
+                                                   {FaultKind::stray_bytes, "stray_bytes"},
+                                                   {FaultKind::disconnect, "disconnect"},
+                                                   {FaultKind::ignored_write, "ignored_write"},
+                                                   {FaultKind::sensor_stuck, "sensor_stuck"},
+                                                   {FaultKind::sensor_jumping, "sensor_jumping"},
+                                                   {FaultKind::sensor_out_of_range, "sensor_out_of_range"},
+                                                   {FaultKind::line_blocked, "line_blocked"},
+                                                   {FaultKind::line_leaking, "line_leaking"},
+                                                   {FaultKind::object_removed, "object_removed"}});
 
 constexpr double longest_s = 86400;
 
@@ -63,8 +79,7 @@ FaultSpec read_fault(const document::Document& document, const document::Node& n
                      const std::vector<std::string>& channels, document::Problems& problems) {
   document::MapReader map(document, node, problems, "fault");
   std::string name = map.text("name");
-  FaultSpec fault =
-      fault_of(static_cast<FaultKind>(map.choice("kind", {kind_names.begin(), kind_names.end()})));
+  FaultSpec fault = fault_of(map.choice("kind", kind_names));
   fault.name = std::move(name);
   fault.at_s = map.optional_number("at_s", up_to(longest_s));
   fault.for_s = map.optional_number("for_s", document::Range{shortest_s, longest_s});
@@ -81,7 +96,7 @@ FaultSpec read_fault(const document::Document& document, const document::Node& n
 }  // namespace
 
 std::string_view name_of(FaultKind kind) noexcept {
-  return kind_names[static_cast<std::size_t>(kind)];
+  return kind_names[kind];
 }
 
 FaultSpec fault_of(FaultKind kind) {

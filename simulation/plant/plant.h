@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/enum_table.h"
 #include "model/model.h"
 
 namespace softgrip::simulation {
@@ -30,6 +31,10 @@ struct LineFault {
   Kind kind = Kind::none;
   double share = 0;  ///< for leaking: share of the command that is lost, 0 to 1
 };
+/// Names of the kinds in rig files.
+inline constexpr auto line_fault_names = enum_names<LineFault::Kind>({{LineFault::Kind::none, "free"},
+                                                                      {LineFault::Kind::blocked, "blocked"},
+                                                                      {LineFault::Kind::leaking, "leaking"}});
 
 /// A fault of the displacement sensor.
 struct SensorFault {
@@ -43,6 +48,12 @@ struct SensorFault {
   Kind kind = Kind::none;
   double value_mm = 0;
 };
+/// Names of the kinds in rig files.
+inline constexpr auto sensor_fault_names =
+    enum_names<SensorFault::Kind>({{SensorFault::Kind::none, "good"},
+                                   {SensorFault::Kind::stuck, "stuck"},
+                                   {SensorFault::Kind::offset, "offset"},
+                                   {SensorFault::Kind::out_of_range, "out_of_range"}});
 
 struct PlantSettings {
   model::Model model;

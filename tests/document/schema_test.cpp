@@ -5,10 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include "base/enum_table.h"
+
 namespace softgrip::document::schema_test {
 namespace {
 
 enum class Mode : std::uint8_t { off, slow, fast };
+constexpr auto mode_names =
+    enum_names<Mode>({{Mode::off, "off"}, {Mode::slow, "slow"}, {Mode::fast, "fast"}});
 
 struct Base {
   std::string path;
@@ -32,7 +36,7 @@ Keys<Settings> keys() {
       optional("count", &Settings::count, {1, 100}, "a count"),
       optional("active", &Settings::low, {"high", "low"}, "a level"),
       optional("loud", &Settings::loud, {}, "a switch"),
-      optional("mode", &Settings::mode, {"off", "slow", "fast"}, "a mode"),
+      optional("mode", &Settings::mode, mode_names, "a mode"),
       optional("latency_us", &Settings::latency_us, {0, 50}, "a time", "no limit"),
   };
 }

@@ -38,7 +38,7 @@ TEST(ChainGolden, PresetsGiveTheNumbersOfScipy) {
     if (running != model + name) {
       running = model + name;
       chain = Chain<double>(preset(model), {}, dt);
-      signal = signal_named(name).value();
+      signal = signal_names.find(name).value();
       done = 0;
     }
     while (done < std::lround(std::stod(time) / dt)) {

@@ -9,14 +9,18 @@ namespace softgrip::model::signals_test {
 namespace {
 
 TEST(Signals, NamesGoBothWays) {
-  EXPECT_EQ(all_signals().size(), 6u);
-  for (const SignalName signal : all_signals()) EXPECT_EQ(signal_named(name_of(signal)), signal);
-  EXPECT_FALSE(signal_named("tp3"));
-  EXPECT_FALSE(signal_named(""));
+  EXPECT_EQ(signal_names.size(), 6u);
+  for (const auto& [signal, name] : signal_names) {
+    EXPECT_EQ(name_of(signal), name);
+    EXPECT_EQ(signal_names.find(name), signal);
+  }
+  EXPECT_FALSE(signal_names.find("tp3"));
+  EXPECT_FALSE(signal_names.find(""));
 }
 
 TEST(Signals, StartAndEndAtZeroAndStayWithinSixtyKilopascal) {
-  for (const SignalName signal : all_signals()) {
+  for (const auto& [signal, name] : signal_names) {
+    SCOPED_TRACE(name);
     const double end = duration_s(signal);
     EXPECT_EQ(value_kpa(signal, 0), 0);
     EXPECT_EQ(value_kpa(signal, end), 0);

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include <fmt/ranges.h>
+
 #include "base/numbers.h"
 #include "sysid/logs/simulated_log.h"
 #include "tools/command_line/input_files.h"
@@ -29,18 +31,13 @@ struct SimulateOptions {
   bool json = false;
 };
 
-std::string signal_names() {
-  std::string names;
-  for (const model::SignalName signal : model::all_signals()) {
-    if (!names.empty()) names += " ";
-    names += model::name_of(signal);
-  }
-  return names;
+std::string listed_signals() {
+  return fmt::format("{}", fmt::join(model::signal_names.names(), " "));
 }
 
 /// Returns a log with the command to simulate, or an exit code.
 tl::expected<sysid::Log, ExitCode> input_of(const SimulateOptions& options) {
-  if (const auto signal = model::signal_named(options.input)) {
+  if (const auto signal = model::signal_names.find(options.input)) {
     return sysid::sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
   }
   if (options.rate_hz) {
@@ -56,7 +53,7 @@ tl::expected<sysid::Log, ExitCode> input_of(const SimulateOptions& options) {
   sysid::Campaign campaign = sysid::read_campaign({options.input}, problems, log_options);
   if (campaign.unreadable) {
     return tl::unexpected{
-        fail(ExitCode::io, problems.list().front().message + " (signals are " + signal_names() + ")")};
+        fail(ExitCode::io, problems.list().front().message + " (signals are " + listed_signals() + ")")};
   }
   if (campaign.logs.empty()) return tl::unexpected{refuse_logs(problems)};
   sysid::Log log = std::move(campaign.logs.front());
@@ -113,7 +110,7 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--model", options->model, "Model file")->required();
   command
       ->add_option("--input", options->input,
-                   "SIGNAL (" + signal_names() + ") or a log (CSV, or a recording's folder)")
+                   "SIGNAL (" + listed_signals() + ") or a log (CSV, or a recording's folder)")
       ->required();
   command->add_option("--out", options->out, "Log to write ('-': standard output)")->required();
   command

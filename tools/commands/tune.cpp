@@ -129,9 +129,7 @@ ExitCode run(const TuneOptions& chosen) {
   if (options.rate_hz) task.rate_hz = *options.rate_hz;
   if (options.pressure_max_kpa) task.channel.limits.pressure_max_kpa = *options.pressure_max_kpa;
   if (options.feedforward) {
-    const auto& names = control::feedforward_names;
-    task.channel.feedforward.kind = static_cast<control::FeedforwardKind>(
-        std::find(names.begin(), names.end(), *options.feedforward) - names.begin());
+    task.channel.feedforward.kind = control::feedforward_names.find(*options.feedforward).value();
   }
   const auto accepted =
       control::check_feedforward(*model, task.channel.feedforward, task.channel.limits, 1 / task.rate_hz);
@@ -172,8 +170,7 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(10.0, 2000.0));
   command
       ->add_option("--feedforward", options->feedforward, "Feedforward [the feedforward of the rig, or none]")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(control::feedforward_names.begin(), control::feedforward_names.end())));
+      ->check(CLI::IsMember(control::feedforward_names.names()));
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
                    "Highest pressure, if --rig is not given [60]")

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/enum_table.h"
+
 namespace softgrip::tools::doctor {
 namespace {
 
@@ -58,17 +60,11 @@ std::string verdict_line(const Examination& examination, const Findings& finding
 }  // namespace
 
 std::string_view name_of(Verdict verdict) noexcept {
-  switch (verdict) {
-    case Verdict::ok:
-      return "ok";
-    case Verdict::not_judged:
-      return "not_judged";
-    case Verdict::warn:
-      return "warn";
-    case Verdict::fail:
-      return "fail";
-  }
-  return "?";
+  static constexpr auto names = enum_names<Verdict>({{Verdict::ok, "ok"},
+                                                     {Verdict::not_judged, "not_judged"},
+                                                     {Verdict::warn, "warn"},
+                                                     {Verdict::fail, "fail"}});
+  return names[verdict];
 }
 
 std::string counted(std::size_t count, std::string_view noun) {

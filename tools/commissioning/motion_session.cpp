@@ -164,7 +164,7 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
 std::string MotionSession::complaint() const {
   const bool gap = line_->failed.status == drivers::BusStatus::watchdog_tripped;
   const std::string text = gap ? line_->failed.detail.data() : board_.detail();
-  return text.empty() ? drivers::name_of(line_->failed.status) : text;
+  return text.empty() ? std::string(drivers::name_of(line_->failed.status)) : text;
 }
 
 std::optional<MotionFailure> MotionSession::bus_failure() const {

@@ -12,15 +12,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/enum_table.h"
+
 namespace softgrip::plc {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names of the daemon's states in its JSON, in the order of StateCode.
-constexpr std::array<std::string_view, 7> states{"",        "starting", "idle",   "resynchronising",
-                                                 "running", "stopping", "faulted"};
+/// Names of the daemon's states in its JSON.
+constexpr auto states = enum_names<StateCode>({{StateCode::no_daemon, ""},
+                                               {StateCode::starting, "starting"},
+                                               {StateCode::idle, "idle"},
+                                               {StateCode::resynchronising, "resynchronising"},
+                                               {StateCode::running, "running"},
+                                               {StateCode::stopping, "stopping"},
+                                               {StateCode::faulted, "faulted"}});
 constexpr std::array<std::string_view, 6> results{"-",         "HOLDING",  "NO PART",
                                                   "PART LOST", "RELEASED", "ERROR"};
 
@@ -80,7 +87,9 @@ void show_status(const Json& status, const RegisterMap& map, modbus::Registers& 
   const Json& fault = status["fault"];
   const Json& channels = status["channels"];
   const bool runs = sequence.is_object() && sequence["ended"].is_null();
-  to.set_holding(map.at(Name::state), place_of(states, status["state"].get<std::string>()));
+  to.set_holding(map.at(Name::state),
+                 static_cast<std::uint16_t>(
+                     states.find(status["state"].get<std::string>()).value_or(StateCode::no_daemon)));
   to.set_holding(map.at(Name::result), place_of(results, status["result"].get<std::string>()));
   to.set_holding(map.at(Name::fault), fault.is_object() ? number_in(fault["code"].get<std::string>()) : 0);
   to.set_holding(map.at(Name::step),
@@ -110,10 +119,14 @@ void show_no_daemon(const RegisterMap& map, modbus::Registers& to) {
     to.set_holding(map.at(name), 0);
 }
 
-const char* command_of(CommandCode code) noexcept {
-  constexpr std::array<const char*, last_command + 1> words{"",     "start",   "stop",
-                                                            "vent", "release", "acknowledge"};
-  return words[static_cast<std::size_t>(code)];
+std::string_view command_of(CommandCode code) noexcept {
+  static constexpr auto words = enum_names<CommandCode>({{CommandCode::none, ""},
+                                                         {CommandCode::start, "start"},
+                                                         {CommandCode::stop, "stop"},
+                                                         {CommandCode::vent, "vent"},
+                                                         {CommandCode::release, "release"},
+                                                         {CommandCode::acknowledge, "acknowledge"}});
+  return words[code];
 }
 
 tl::expected<Json, Reason> request_of(const Settings& settings, const Command& command) {

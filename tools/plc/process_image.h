@@ -34,7 +34,7 @@ void show_no_daemon(const RegisterMap& map, modbus::Registers& registers);
 [[nodiscard]] tl::expected<nlohmann::ordered_json, Reason> request_of(const Settings& settings,
                                                                       const Command& command);
 /// Returns the name that the daemon's socket uses for a command.
-[[nodiscard]] const char* command_of(CommandCode code) noexcept;
+[[nodiscard]] std::string_view command_of(CommandCode code) noexcept;
 /// Returns the reason code for the member `error` of a daemon's response.
 [[nodiscard]] Reason reason_of(const nlohmann::ordered_json& error);
 

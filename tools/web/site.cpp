@@ -67,8 +67,7 @@ void put_file(Response& response, std::string_view text, const char* type) {
 }  // namespace
 
 std::string_view name_of(Role role) noexcept {
-  constexpr std::array<std::string_view, 3> names{"none", "look", "operate"};
-  return names[static_cast<std::size_t>(role)];
+  return role_names[role];
 }
 
 Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,

@@ -17,7 +17,8 @@ model::Model twin() {
 }
 
 TEST(SampledSignal, EndsWhereTheSignalEnds) {
-  for (const model::SignalName signal : model::all_signals()) {
+  for (const auto& [signal, name] : model::signal_names) {
+    SCOPED_TRACE(name);
     for (const double rate_hz : {7.0, 100.0, 1000.0}) {
       const Log log = sampled_signal(signal, rate_hz);
       ASSERT_FALSE(log.time_s.empty());

@@ -1,3 +1,4 @@
+#include "base/enum_table.h"
 #include "tools/web/metrics/metrics.h"
 
 #include <array>
@@ -26,10 +27,11 @@ std::string escaped(std::string_view value) {
 }  // namespace
 
 void MetricText::family(std::string_view name, Type type, std::string_view help) {
-  constexpr std::array<std::string_view, 3> types{"gauge", "counter", "summary"};
+  static constexpr auto types =
+      enum_names<Type>({{Type::gauge, "gauge"}, {Type::counter, "counter"}, {Type::summary, "summary"}});
   name_ = name;
   text_.append("# HELP ").append(name).append(" ").append(help).append("\n# TYPE ").append(name).append(" ");
-  text_.append(types[static_cast<std::size_t>(type)]).append("\n");
+  text_.append(types[type]).append("\n");
 }
 
 void MetricText::sample(const Labels& labels, double value, std::string_view suffix) {
