@@ -77,6 +77,7 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   const double predicted_mm = take_reading(input, channel);
   if (is_new && displacement_used_) watch_jumps(input.reading, predicted_mm, channel);
   follow_finger(input.resynchronise, predicted_mm, channel);
+  channel.offset_mm = offset_mm_;
   watch_model(input, predicted_mm, is_new, channel);
   channel.shortfall_mm = has_reading ? -channel.residual_mm : not_known;
   weigh(predicted_mm, channel);

@@ -52,8 +52,6 @@ class ChannelController {
   /// cut the reference at now + preview_s() and not earlier.
   [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
   [[nodiscard]] const LimitSettings& limits() const noexcept { return limits_; }
-  /// Returns the offset that resynchronisation has added to the model [mm].
-  [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
  private:
   /// The source of the command in a tick.

@@ -11,6 +11,26 @@ void SequencePlayer::for_each_of_step(Do&& act) noexcept {
   }
 }
 
+SequencePlayer::Outcome SequencePlayer::tick(const SupervisorOutputs& orders, double time_s,
+                                             std::span<const ChannelOutput> seen,
+                                             EventList& events) noexcept {
+  if (orders.interrupt) interrupt(*orders.interrupt, orders.venting, events);
+  if (orders.acknowledged_by) acknowledge(*orders.acknowledged_by, events);
+  if (orders.vented != 0) vented(orders.vented, events);
+  if (orders.no_rest != 0) refuse(orders, seen, events);
+  if (orders.begin != nullptr) start(*orders.begin, time_s, seen, events);
+  Outcome outcome;
+  Phase before = phase();
+  if (orders.release) outcome = release(time_s, seen, events);
+  if (orders.state == State::idle) idle_tick(time_s, seen, events);
+  if (orders.play && !outcome.finished) {
+    before = phase();
+    outcome = play(time_s, seen, events);
+  }
+  outcome.phase = before;
+  return outcome;
+}
+
 void SequencePlayer::start(const PreparedSequence& sequence, double time_s,
                            std::span<const ChannelOutput> seen, EventList& events) noexcept {
   sequence_ = &sequence;
@@ -32,7 +52,7 @@ void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<co
   events.add<Event::Kind::step_started>(index, 0, attempts_);
 }
 
-SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const ChannelOutput> seen,
+SequencePlayer::Outcome SequencePlayer::play(double time_s, std::span<const ChannelOutput> seen,
                                              EventList& events) noexcept {
   const bool holds = now().step.kind == StepKind::hold;
   bool to_grip = false;
@@ -165,7 +185,7 @@ void SequencePlayer::lose(std::size_t channel, EventList& events) noexcept {
 SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& events) noexcept {
   if (end_ != SequenceEnd::done) answer_the_rest(events);
   stop_playing();
-  return {true, end_, action};
+  return {.finished = true, .end = end_, .action = action};
 }
 
 /// Sets the result ERROR for every channel of the sequence that has no grip result.
@@ -210,9 +230,14 @@ void SequencePlayer::vented(std::uint32_t channels, EventList& events) noexcept 
   }
 }
 
-void SequencePlayer::refuse(std::uint32_t channels, EventList& events) noexcept {
+void SequencePlayer::refuse(const SupervisorOutputs& orders, std::span<const ChannelOutput> seen,
+                            EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((channels & channel_bit(i)) != 0) answer(i, GripResult::error, GripEvidence::none, events);
+    if ((orders.no_rest & channel_bit(i)) != 0 && orders.unsettled[i] != UnsettledReason::none)
+      events.add_of_channel<Event::Kind::not_at_rest>(i, orders.unsettled[i], 0, seen[i].offset_mm);
+  }
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if ((orders.no_rest & channel_bit(i)) != 0) answer(i, GripResult::error, GripEvidence::none, events);
   }
 }
 

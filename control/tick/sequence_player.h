@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "control/tick/channel_player.h"
+#include "control/tick/supervisor.h"
 #include "control/tick/tick.h"
 
 namespace softgrip::control {
@@ -17,18 +18,35 @@ class SequencePlayer {
  public:
   explicit SequencePlayer(std::vector<ChannelPlayer> channels = {}) : channels_(std::move(channels)) {}
 
-  /// Starts a sequence from rest: clears the results of its channels and begins its first step.
-  void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelOutput> seen,
-             EventList& events) noexcept;
-
   /// State of the sequence at the end of a tick.
   struct Outcome {
     bool finished = false;
     SequenceEnd end = SequenceEnd::done;
     OnFail action = OnFail::hold;  ///< action after a finished sequence: vent, hold or abort
+    Phase phase = Phase::idle;     ///< phase in which the sequence finished
   };
+  /// Executes one tick with the orders of the supervisor. `seen` is the output of the last tick.
+  Outcome tick(const SupervisorOutputs& orders, double time_s, std::span<const ChannelOutput> seen,
+               EventList& events) noexcept;
+  /// Returns true if a channel has the result NO PART, PART LOST, RELEASED or ERROR.
+  [[nodiscard]] bool has_answers() const noexcept;
+
+  [[nodiscard]] ChannelDemand demand(std::size_t channel, double time_s) const noexcept;
+  [[nodiscard]] const ChannelPlayer& channel(std::size_t index) const noexcept { return channels_[index]; }
+  [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
+  /// Returns the phase of the rig, which selects the safe action.
+  [[nodiscard]] Phase phase() const noexcept;
+  /// Returns true if the finger moves without contact, as far as the player knows. `at_rest` is true if the
+  /// command of the channel is the rest pressure.
+  [[nodiscard]] bool free_motion(std::size_t channel, bool at_rest) const noexcept;
+
+ private:
+  /// Starts a sequence from rest: clears the results of its channels and begins its first step.
+  void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelOutput> seen,
+             EventList& events) noexcept;
+
   /// Executes a tick of the running sequence.
-  Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
+  Outcome play(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
   /// Handles a release request. The sequence continues with its next release step. Without a further release
   /// step, the sequence is finished and must be vented. A release request during a hold step lets the
@@ -44,23 +62,12 @@ class SequencePlayer {
   void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   /// Records that a vent has released these channels: their result HOLDING becomes RELEASED.
   void vented(std::uint32_t channels, EventList& events) noexcept;
-  /// Sets the result ERROR for the channels of a sequence that could not start.
-  void refuse(std::uint32_t channels, EventList& events) noexcept;
-  /// Returns true if a channel has the result NO PART, PART LOST, RELEASED or ERROR.
-  [[nodiscard]] bool has_answers() const noexcept;
+  /// Sets the result ERROR for the channels of a sequence that could not start, and reports why.
+  void refuse(const SupervisorOutputs& orders, std::span<const ChannelOutput> seen,
+              EventList& events) noexcept;
   /// Clears the results NO PART, PART LOST, RELEASED and ERROR.
   void acknowledge(std::uint32_t request, EventList& events) noexcept;
 
-  [[nodiscard]] ChannelDemand demand(std::size_t channel, double time_s) const noexcept;
-  [[nodiscard]] const ChannelPlayer& channel(std::size_t index) const noexcept { return channels_[index]; }
-  [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
-  /// Returns the phase of the rig, which selects the safe action.
-  [[nodiscard]] Phase phase() const noexcept;
-  /// Returns true if the finger moves without contact, as far as the player knows. `at_rest` is true if the
-  /// command of the channel is the rest pressure.
-  [[nodiscard]] bool free_motion(std::size_t channel, bool at_rest) const noexcept;
-
- private:
   template <class Do>
   void for_each_of_step(Do&& act) noexcept;
   [[nodiscard]] const PreparedStep& now() const noexcept { return sequence_->steps[step_]; }

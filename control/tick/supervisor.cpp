@@ -3,13 +3,33 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/enum_table.h"
+
 namespace softgrip::control {
 
 namespace {
+constexpr auto state_names = enum_names<State>({{State::starting, "starting"},
+                                                {State::idle, "idle"},
+                                                {State::resynchronising, "resynchronising"},
+                                                {State::running, "running"},
+                                                {State::stopping, "stopping"},
+                                                {State::faulted, "faulted"}});
+constexpr auto end_names = enum_names<SequenceEnd>({{SequenceEnd::done, "done"},
+                                                    {SequenceEnd::failed, "failed"},
+                                                    {SequenceEnd::stopped, "stopped"},
+                                                    {SequenceEnd::faulted, "faulted"}});
+
 void refuse(RefusalCode code, const Request& request, EventList& events) noexcept {
   events.add<Event::Kind::request_refused>({code, FaultCode::none}, request.id);
 }
 }  // namespace
+
+std::string_view name_of(State state) noexcept {
+  return state_names[state];
+}
+std::string_view name_of(SequenceEnd end) noexcept {
+  return end_names[end];
+}
 
 Supervisor::Supervisor(const RigSettings& settings)
     : safety_(settings.safety), all_((1U << settings.channels.size()) - 1), rig_(rig_key(settings)) {
@@ -30,6 +50,10 @@ SupervisorOutputs Supervisor::tick(const TickInput& input, const SupervisorInput
     stop(inputs, 0, outputs, events);
   }
   move_on(inputs, outputs, events);
+  outputs.state = state_;
+  outputs.venting = venting_;
+  outputs.release = outputs.release && state_ == State::running;
+  outputs.play = inputs.heard && state_ == State::running;
   return outputs;
 }
 
@@ -278,6 +302,7 @@ void Supervisor::move_on(const SupervisorInputs& inputs, SupervisorOutputs& outp
     go(State::running, start_request_, events);
   } else if (state_ == State::resynchronising && !outputs.seek_rest && inputs.rest == Rest::timed_out) {
     outputs.no_rest = sequence_->channels;
+    outputs.unsettled = inputs.unsettled;
     end_sequence(SequenceEnd::failed, events);
     go(State::idle, 0, events);
   }

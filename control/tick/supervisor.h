@@ -30,24 +30,34 @@ struct SupervisorInputs {
   std::uint32_t at_rest = 0;  ///< channels whose command is at the rest pressure
   Phase phase = Phase::idle;  ///< present phase of the sequence player
   bool answers = false;       ///< true: there are grip results that `acknowledge` can reset
+  /// False after a gap between two ticks, until the bus reports an exchange again. During the gap, the board
+  /// may have vented the fingers, and the bus reports such a vent only with the next exchange. Therefore, no
+  /// step ends before this exchange.
+  bool heard = true;
   Rest rest = Rest::pending;
+  std::uint32_t shiftable = 0;  ///< channels at rest whose model may be shifted to the reading
+  std::array<UnsettledReason, max_channels> unsettled{};  ///< reason why each channel is not at rest
 };
 
 /// Outputs of the supervisor for this tick. In the bit masks, bit i is channel i.
 struct SupervisorOutputs {
+  State state = State::starting;                 ///< state after the decisions of this tick
+  std::uint32_t venting = 0;                     ///< see Supervisor::venting()
   std::optional<SequenceEnd> interrupt;          ///< reason for which the player must end its sequence;
                                                  ///< empty: the player continues
   std::optional<std::uint32_t> acknowledged_by;  ///< id of the request that resets the grip results; empty:
                                                  ///< no reset
   bool release = false;                          ///< true: the running sequence must continue with its
                                                  ///< release step
+  bool play = false;                             ///< true: the running sequence executes a tick
   std::uint32_t vented = 0;                      ///< channels that have been vented because of a stop
   std::uint32_t no_rest = 0;                     ///< channels that get the result ERROR, because they did not
                                                  ///< come to rest
-  bool seek_rest = false;                        ///< true: a start was accepted, so the loop must wait until
-                                                 ///< the channels are at rest
-  const PreparedSequence* begin = nullptr;       ///< sequence that must start now, because all channels of
-                                                 ///< the sequence are at rest
+  std::array<UnsettledReason, max_channels> unsettled{};  ///< for no_rest: the reason of each channel
+  bool seek_rest = false;                   ///< true: a start was accepted, so the loop must wait until
+                                            ///< the channels are at rest
+  const PreparedSequence* begin = nullptr;  ///< sequence that must start now, because all channels of
+                                            ///< the sequence are at rest
 };
 
 class Supervisor {

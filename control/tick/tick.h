@@ -119,6 +119,7 @@ struct ChannelOutput {
   double feedback_kpa = 0;     ///< feedback part of the requested command; 0 if no reference is followed
   double residual_mm = 0;      ///< reading minus (model output + offset) at the time of the reading; NaN
                                ///< without a reading
+  double offset_mm = 0;        ///< offset that resynchronisation has added to the model
   double shortfall_mm = 0;     ///< displacement of free motion minus reading; NaN if the shortfall is unknown
   double free_kpa = 0;         ///< command under which the free finger rests at the last valid reading
   /// gripping pressure: command minus free_kpa; NaN without displacement feedback

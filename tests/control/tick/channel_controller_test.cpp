@@ -271,7 +271,7 @@ TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
   while (!rig.tick().synchronised && ticks < 1000) ++ticks;
   EXPECT_LT(ticks * tick_s, 1);
   EXPECT_NEAR(rig.last.residual_mm, 0, 0.1);
-  EXPECT_NEAR(rig.controller.offset_mm(), off, 0.3);
+  EXPECT_NEAR(rig.last.offset_mm, off, 0.3);
   rig.input.resynchronise = false;
   const double before = rig.last.command_kpa;
   Reference reference;
