@@ -13,7 +13,7 @@ LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last
                      double ceiling_kpa) noexcept {
   // If the last command is not finite, the rest pressure is the only pressure that is known to be safe.
   const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : resting_kpa(limits);
-  if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {last, false, false, true, false};
+  if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {.command_kpa = last, .invalid = true};
   // A ceiling below the rest pressure is replaced by the rest pressure. Otherwise, a low ceiling would
   // evacuate a finger, or stop a finger that returns to rest.
   const double highest_kpa = std::max(ceiling_kpa, resting_kpa(limits));
@@ -21,7 +21,10 @@ LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last
   const double inside = in_range(limits, capped ? highest_kpa : wanted_kpa);
   const double reached = std::clamp(inside, last - limits.slew_down_kpa_per_s * elapsed_s,
                                     last + limits.slew_up_kpa_per_s * elapsed_s);
-  return {reached, in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};
+  return {.command_kpa = reached,
+          .saturated = in_range(limits, wanted_kpa) != wanted_kpa,
+          .slewing = reached != inside,
+          .capped = capped};
 }
 
 LimitedReference limit_reference(const LimitSettings& limits, double reference_mm) noexcept {

@@ -32,7 +32,7 @@ std::array<double, 6> quintic_to_rest(const ReferencePoint& from, double value, 
 }  // namespace
 
 void Reference::start(double time_s, double value) noexcept {
-  start(time_s, ReferencePoint{value, 0, 0});
+  start(time_s, ReferencePoint{.value = value});
 }
 
 void Reference::start(double time_s, const ReferencePoint& point) noexcept {
@@ -59,11 +59,14 @@ ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexce
   const double value = value_of(segment, time_s);
   switch (segment.shape) {
     case Shape::quintic:
-      return {value, c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5]))),
-              2 * c[2] + t * (6 * c[3] + t * (12 * c[4] + t * 20 * c[5]))};
+      return {.value = value,
+              .rate = c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5]))),
+              .acceleration = 2 * c[2] + t * (6 * c[3] + t * (12 * c[4] + t * 20 * c[5]))};
     case Shape::sine: {
       const double phase = c[2] * t;
-      return {value, c[1] * c[2] * std::sin(phase), c[1] * c[2] * c[2] * std::cos(phase)};
+      return {.value = value,
+              .rate = c[1] * c[2] * std::sin(phase),
+              .acceleration = c[1] * c[2] * c[2] * std::cos(phase)};
     }
   }
   return {};
@@ -80,9 +83,11 @@ Reference::Place Reference::place(double time_s) const noexcept {
     const Segment& segment = segments_[i];
     if (time_s < segment.start_s) continue;
     const double end_s = segment.start_s + segment.duration_s;
-    return time_s <= end_s ? Place{&segment, time_s, true} : Place{&segment, end_s, false};
+    return time_s <= end_s ? Place{.segment = &segment, .time_s = time_s, .moves = true}
+                           : Place{.segment = &segment, .time_s = end_s, .moves = false};
   }
-  return count_ == 0 ? Place{} : Place{&segments_[0], segments_[0].start_s, false};
+  return count_ == 0 ? Place{}
+                     : Place{.segment = &segments_[0], .time_s = segments_[0].start_s, .moves = false};
 }
 
 double Reference::value_of(const Place& there) const noexcept {
@@ -91,7 +96,7 @@ double Reference::value_of(const Place& there) const noexcept {
 
 ReferencePoint Reference::at(double time_s) const noexcept {
   const Place there = place(time_s);
-  return there.moves ? evaluate(*there.segment, there.time_s) : ReferencePoint{value_of(there), 0, 0};
+  return there.moves ? evaluate(*there.segment, there.time_s) : ReferencePoint{.value = value_of(there)};
 }
 
 double Reference::value_at(double time_s) const noexcept {
@@ -157,7 +162,7 @@ bool Reference::sine(double mean, double amplitude, double frequency_hz, double 
 
 void Reference::cut(double time_s) noexcept {
   while (count_ > 0 && segments_[count_ - 1].start_s >= time_s) {
-    rest_ = {evaluate(segments_[count_ - 1], segments_[count_ - 1].start_s).value, 0, 0};
+    rest_ = {.value = evaluate(segments_[count_ - 1], segments_[count_ - 1].start_s).value};
     --count_;
   }
   if (count_ == 0) {

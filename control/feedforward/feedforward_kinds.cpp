@@ -91,7 +91,7 @@ ReferencePoint FullModelFeedforward::target(const FeedforwardQuery& query) const
   const double then_s = query.time_s + preview_s_;
   ReferencePoint point = query.reference->at(then_s);
   const LimitedReference inside = limit_reference(limits_, point.value);
-  if (inside.clamped) point = {inside.reference_mm, 0, 0};
+  if (inside.clamped) point = {.value = inside.reference_mm};
   point.value -= query.offset_mm;
   return point;
 }
@@ -142,7 +142,7 @@ void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per
   // that creeps. The shorter of the two times is sufficient.
   const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
   const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
-  fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
+  fade_.start(then_s, {.value = difference_mm, .rate = speed_mm_per_s - to.rate});
   (void)fade_.ramp_for(0, std::max(fade_s, std::min(by_speed_s, by_acceleration_s)));
 }
 

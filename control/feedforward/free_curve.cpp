@@ -33,7 +33,7 @@ std::vector<Level> levels_of(const model::Model& model, const LimitSettings& lim
   const long rest_steps = std::lround(rests_after_s / curve_step_s);
   for (int i = 0; i <= levels; ++i) {
     const double range_kpa = limits.pressure_max_kpa - limits.pressure_min_kpa;
-    Level level{limits.pressure_min_kpa + range_kpa * i / levels, 0, 0};
+    Level level{.command_kpa = limits.pressure_min_kpa + range_kpa * i / levels};
     valve.reset(rest_kpa);
     const auto pressure = [&] { return has_valve ? valve.pressure_kpa() : level.command_kpa; };
     body.reset(has_valve ? valve.pressure_kpa() : rest_kpa);

@@ -63,7 +63,8 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
     const model::Dual<double> there(pressure_kpa + (rising ? aside_kpa : -aside_kpa), 1);
     for (const double duration_s : {0.0, tick_s}) {
       const double gain = chain.peek(duration_s, there).v;
-      if (std::isnan(gain) || gain < worst.gain_mm_per_kpa) worst = {gain, pressure_kpa, rising};
+      if (std::isnan(gain) || gain < worst.gain_mm_per_kpa)
+        worst = {.gain_mm_per_kpa = gain, .pressure_kpa = pressure_kpa, .rising = rising};
     }
   }
 }

@@ -45,7 +45,7 @@ class Fitting {
     }
     const std::uint32_t all = mask_of(sequence_.channels, {}, (1U << settings_.channels.size()) - 1);
     for (const Step& step : sequence_.steps) {
-      PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0, 0, {}};
+      PreparedStep prepared{.step = step, .channels = mask_of(step.channels, step.at, all), .plans = {}};
       if ((prepared.channels & ~all) != 0) {
         report(step, "names a channel that the sequence does not use");
       }

@@ -32,7 +32,9 @@ class Walk {
       : planned_(planned(channel)),
         rest_kpa_(resting_kpa(channel.limits)),
         ahead_s_(planned_ ? plan_ahead_s(channel.model, channel.feedforward, tick_s) : 0),
-        player_({margin_mm, rest_kpa_, planned_ ? ahead_s_ + plan_lead_s : 0}) {
+        player_({.margin_mm = margin_mm,
+                 .rest_kpa = rest_kpa_,
+                 .preview_s = planned_ ? ahead_s_ + plan_lead_s : 0}) {
     if (planned_ && plans) planner_.emplace(channel.model, channel.limits, tick_s);
   }
 

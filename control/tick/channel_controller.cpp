@@ -227,7 +227,11 @@ double ChannelController::request(const ChannelDemand& demand, std::int64_t tick
 double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
                                 ChannelOutput& channel) noexcept {
   const bool entering = !tracking();
-  FeedforwardQuery query{demand.reference, demand.time_s, offset_mm_, demand.plan, demand.plan_origin_s};
+  FeedforwardQuery query{.reference = demand.reference,
+                         .time_s = demand.time_s,
+                         .offset_mm = offset_mm_,
+                         .plan = demand.plan,
+                         .plan_origin_s = demand.plan_origin_s};
   if (entering) {
     feedforward_.enter(running_, query, channel.command_kpa);
     ticks = 1;

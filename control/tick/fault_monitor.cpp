@@ -65,13 +65,15 @@ Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelOutpu
   const auto note = [&first](const Fault& fault) {
     if (first.code == FaultCode::none) first = fault;
   };
-  if (input.emergency_stop) note_cause({FaultCode::emergency_stop, whole_rig, 0});
-  if (input.inputs_lost) note_cause({FaultCode::inputs_lost, whole_rig, 0});
+  if (input.emergency_stop) note_cause({.code = FaultCode::emergency_stop, .channel = whole_rig});
+  if (input.inputs_lost) note_cause({.code = FaultCode::inputs_lost, .channel = whole_rig});
   note(cause_);
   note(bus(input.bus, starting));
   for (std::size_t i = 0; i < channels_.size(); ++i) note(channel(i, input, seen[i], starting));
   if (settings_.overrun_cycles > 0 && input.overrun_cycles >= settings_.overrun_cycles) {
-    note({FaultCode::cycles_lost, whole_rig, static_cast<double>(input.overrun_cycles)});
+    note({.code = FaultCode::cycles_lost,
+          .channel = whole_rig,
+          .value = static_cast<double>(input.overrun_cycles)});
   }
   return first;
 }
@@ -81,11 +83,11 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   bus_cycles_ = good ? 0 : bus_cycles_ + 1;
   if (good) return {};
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
-  const Fault fault{code, whole_rig, static_cast<double>(bus_cycles_)};
+  const Fault fault{.code = code, .channel = whole_rig, .value = static_cast<double>(bus_cycles_)};
   // If the daemon cannot reach the board, the watchdog trip is a consequence of the bus fault. Therefore,
   // only the bus fault is reported.
   const bool unreached = !bus.connected && code == FaultCode::board_watchdog_tripped;
-  note_cause({unreached ? FaultCode::bus_down : code, whole_rig, fault.value});
+  note_cause({.code = unreached ? FaultCode::bus_down : code, .channel = whole_rig, .value = fault.value});
   if (starting && !said_by_board(bus.fault)) return {};
   return inhibits(code) || bus_cycles_ >= settings_.bus_down_cycles ? fault : Fault{};
 }
@@ -99,7 +101,7 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   Channel& channel = channels_[index];
   const auto number = static_cast<std::uint8_t>(index);
   if (seen.request_invalid) {
-    return {FaultCode::not_finite, number, 0};
+    return {.code = FaultCode::not_finite, .channel = number};
   }
   const Fault of_reading = displacement_used_[index] ? reading(channel, number, seen, starting) : Fault{};
   const double readback = input.readings[index].command_readback_kpa;
@@ -108,12 +110,16 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   channel.readback_cycles = readback_off ? channel.readback_cycles + 1 : 0;
   const bool unsteady = settings_.unsteady_is_fault && seen.unsteady;
   const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
-  const Fault of_pressure{FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
-  const Fault of_readback{FaultCode::readback_mismatch, number, readback};
-  const Fault of_jumps{FaultCode::reading_jumped, number, seen.jump_mm};
-  if (channel.invalid_cycles > 0) note_cause({code_of(seen.validity), number, seen.age_s});
+  const Fault of_pressure{.code = FaultCode::pressure_not_followed,
+                          .channel = number,
+                          .value = input.readings[index].pressure_kpa};
+  const Fault of_readback{.code = FaultCode::readback_mismatch, .channel = number, .value = readback};
+  const Fault of_jumps{.code = FaultCode::reading_jumped, .channel = number, .value = seen.jump_mm};
+  if (channel.invalid_cycles > 0)
+    note_cause({.code = code_of(seen.validity), .channel = number, .value = seen.age_s});
   if (channel.beyond_cycles > 0) {
-    note_cause({FaultCode::displacement_beyond_limits, number, seen.displacement_mm});
+    note_cause(
+        {.code = FaultCode::displacement_beyond_limits, .channel = number, .value = seen.displacement_mm});
   }
   if (readback_off) note_cause(of_readback);
   if (channel.pressure_cycles > 0) note_cause(of_pressure);
@@ -123,7 +129,7 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   if (readback_off && channel.readback_cycles >= settings_.readback_cycles) return of_readback;
   if (pressure_off) return of_pressure;
   if (settings_.model_unfit_is_fault && seen.health_changed && seen.health == HealthState::unfit) {
-    return {FaultCode::model_unfit, number, seen.health_rms_mm};
+    return {.code = FaultCode::model_unfit, .channel = number, .value = seen.health_rms_mm};
   }
   return {};
 }
@@ -137,10 +143,10 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelO
   channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
   channel.beyond_cycles = seen.displacement_beyond ? channel.beyond_cycles + 1 : 0;
   if (invalid && channel.invalid_cycles >= settings_.invalid_reading_cycles) {
-    return {code_of(seen.validity), index, seen.age_s};
+    return {.code = code_of(seen.validity), .channel = index, .value = seen.age_s};
   }
   if (channel.beyond_cycles >= settings_.displacement_cycles) {
-    return {FaultCode::displacement_beyond_limits, index, seen.displacement_mm};
+    return {.code = FaultCode::displacement_beyond_limits, .channel = index, .value = seen.displacement_mm};
   }
   return {};
 }

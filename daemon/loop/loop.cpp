@@ -109,7 +109,10 @@ void Loop::tell_events() noexcept {
 
 void Loop::record_rows(bool last) noexcept {
   const bool room = shared_.records.push(channels_, [&](Record& row, std::size_t i) {
-    row = {woken_, output_.state, static_cast<std::uint8_t>(i), output_.channels[i]};
+    row = {.at = woken_,
+           .state = output_.state,
+           .channel = static_cast<std::uint8_t>(i),
+           .output = output_.channels[i]};
     // The last row of the recording must contain the last outputs of the board.
     if (last) row.output.command_kpa = row.output.safe_kpa;
   });

@@ -56,8 +56,11 @@ long faults_of_a_heap_block(std::size_t bytes) {
 }
 
 RealTimeStep prepare_heap(std::size_t bytes) {
-  RealTimeStep step{"heap", Outcome::not_asked, "",
-                    "a memory allocation in a thread other than the control loop may cause page faults"};
+  RealTimeStep step{
+      .name = "heap",
+      .outcome = Outcome::not_asked,
+      .detail = "",
+      .cost = "a memory allocation in a thread other than the control loop may cause page faults"};
   if (bytes == 0) return step;
   // Keeps freed blocks in the process, and takes large blocks from the heap instead of new mappings.
   const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
@@ -106,9 +109,13 @@ bool may_lock_without_limit() {
 }
 
 RealTimeStep lock_memory(bool wanted) {
-  RealTimeStep step{"memory lock", Outcome::not_asked, "",
-                    "the first use of a memory page, or its return from swap, can stop the control loop for "
-                    "several milliseconds"};
+  RealTimeStep step{
+      .name = "memory lock",
+      .outcome = Outcome::not_asked,
+      .detail = "",
+      .cost =
+          "the first use of a memory page, or its return from swap, can stop the control loop for "
+          "several milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
   // If a limit on locked memory applies, mlockall() might succeed now, but the kernel could refuse memory
@@ -132,8 +139,10 @@ RealTimeStep lock_memory(bool wanted) {
 }
 
 RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descriptor) {
-  RealTimeStep step{"processor latency", Outcome::not_asked, "",
-                    "an idle processor may need 10 to 200 us to wake the control loop"};
+  RealTimeStep step{.name = "processor latency",
+                    .outcome = Outcome::not_asked,
+                    .detail = "",
+                    .cost = "an idle processor may need 10 to 200 us to wake the control loop"};
   if (!latency_us) return step;
   step.outcome = Outcome::failed;
   descriptor = open("/dev/cpu_dma_latency", O_RDWR | O_CLOEXEC);
@@ -159,9 +168,12 @@ RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descr
 }
 
 RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) {
-  RealTimeStep step{
-      fmt::format("processors of {}", who), Outcome::not_asked, "",
-      "the kernel may move the thread between processors, which also run all other programs of the computer"};
+  RealTimeStep step{.name = fmt::format("processors of {}", who),
+                    .outcome = Outcome::not_asked,
+                    .detail = "",
+                    .cost =
+                        "the kernel may move the thread between processors, which also run all other "
+                        "programs of the computer"};
   if (cpus.empty()) return step;
   step.outcome = Outcome::failed;
   cpu_set_t wanted;
@@ -188,8 +200,10 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 }
 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
-  RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
-                    "other processes may delay the wake-up of the thread by several milliseconds"};
+  RealTimeStep step{.name = fmt::format("scheduling of {}", who),
+                    .outcome = Outcome::not_asked,
+                    .detail = "",
+                    .cost = "other processes may delay the wake-up of the thread by several milliseconds"};
   // The timer slack matters for threads without SCHED_FIFO: by default, the kernel may delay each of their
   // wake-ups by 50 us to save power.
   prctl(PR_SET_TIMERSLACK, 1UL);
@@ -246,8 +260,10 @@ std::size_t stack_left() {
 }
 
 RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
-  RealTimeStep step{fmt::format("stack of {}", who), Outcome::not_asked, "",
-                    "the first deep function call of the thread causes page faults"};
+  RealTimeStep step{.name = fmt::format("stack of {}", who),
+                    .outcome = Outcome::not_asked,
+                    .detail = "",
+                    .cost = "the first deep function call of the thread causes page faults"};
   if (bytes == 0) return step;
   if (const std::size_t left = stack_left(); bytes > left) {
     step.outcome = Outcome::failed;
@@ -322,7 +338,7 @@ void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::st
 }
 
 RealTimeStep kernel_step() {
-  RealTimeStep step{"kernel", Outcome::not_asked, "", ""};
+  RealTimeStep step{.name = "kernel", .outcome = Outcome::not_asked, .detail = "", .cost = ""};
   utsname name{};
   uname(&name);
   // Some real-time kernels from 6.12 on have no /sys/kernel/realtime, but their version text contains

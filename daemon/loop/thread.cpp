@@ -33,7 +33,8 @@ void* run(void* argument) {
 
 Thread::Thread(const Options& options, std::function<void()> body,
                std::function<void(const std::string&)> on_exception) {
-  auto start = std::make_unique<Start>(Start{options.name, std::move(body), std::move(on_exception)});
+  auto start = std::make_unique<Start>(
+      Start{.name = options.name, .body = std::move(body), .on_exception = std::move(on_exception)});
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, options.stack_bytes);

@@ -61,7 +61,7 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
   /// Writes a line if the pipe is ready. A pipe that is ready accepts a complete line, so the write does not
   /// block.
   void write(const std::string& line) {
-    pollfd ready{STDERR_FILENO, POLLOUT, 0};
+    pollfd ready{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
     const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
     blocked_ = !writable;
     // If this write fails, there is no other output that could report the failure.
@@ -102,7 +102,7 @@ bool EventPrinter::passes(const EventEntry& event) {
   if (event.time_s - flow.window_s > window_s) {
     if (flow.suppressed > 0)
       logger_->warn("{} further events of the kind {} were not printed", flow.suppressed, event.kind);
-    flow = {event.time_s, 0, 0};
+    flow = {.window_s = event.time_s};
   }
   if (flow.printed < most_per_window) {
     ++flow.printed;

@@ -154,27 +154,29 @@ void RealRun::recorder_body() {
 }
 
 void RealRun::service_body() {
-  StatusSources sources{parts_.rig.settings,
-                        parts_.provenance,
-                        parts_.service,
-                        parts_.recorder,
-                        parts_.loop_statistics,
-                        parts_.bus_statistics,
-                        parts_.board_text,
-                        parts_.origin,
-                        &report_,
-                        parts_.rig.gpio ? &*parts_.rig.gpio : nullptr,
-                        &parts_.shared};
+  StatusSources sources{.rig = parts_.rig.settings,
+                        .provenance = parts_.provenance,
+                        .service = parts_.service,
+                        .recorder = parts_.recorder,
+                        .loop = parts_.loop_statistics,
+                        .bus = parts_.bus_statistics,
+                        .board = parts_.board_text,
+                        .origin = parts_.origin,
+                        .real_time = &report_,
+                        .gpio = parts_.rig.gpio ? &*parts_.rig.gpio : nullptr,
+                        .shared = &parts_.shared};
   SocketApi api(sources, parts_.rig.socket, parts_.loader, parts_.events,
                 [this](ClientId client, std::string_view line, bool skippable) {
                   return server_ && server_->send(client, line, skippable);
                 });
   if (server_) {
     server_->set_handlers(
-        {[&](ClientId client, std::string_view line) { api.on_line(client, line, parts_.clock.now()); },
-         [&](ClientId client) { api.on_closed(client); }, is_urgent,
-         [&](ClientId client, Role role) { api.on_opened(client, role); },
-         [&](ClientId client) { return api.keeps_place(client); }});
+        {.on_line = [&](ClientId client,
+                        std::string_view line) { api.on_line(client, line, parts_.clock.now()); },
+         .on_closed = [&](ClientId client) { api.on_closed(client); },
+         .is_urgent = is_urgent,
+         .on_opened = [&](ClientId client, Role role) { api.on_opened(client, role); },
+         .keeps_place = [&](ClientId client) { return api.keeps_place(client); }});
   }
   while (!stop_service_.is_set()) {
     service_turns_.add();

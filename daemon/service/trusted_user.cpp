@@ -83,8 +83,9 @@ std::optional<Peer> peer_of(int socket) {
   ucred credentials{};
   socklen_t size = sizeof credentials;
   if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return std::nullopt;
-  return Peer{credentials.pid, credentials.uid,
-              is_trusted(credentials.uid) || in_service_group(socket, credentials.gid)};
+  return Peer{.process = credentials.pid,
+              .user = credentials.uid,
+              .trusted = is_trusted(credentials.uid) || in_service_group(socket, credentials.gid)};
 }
 
 bool daemon_answers(const std::string& socket_path) {

@@ -59,7 +59,8 @@ SequenceLoader::Result SequenceLoader::load_named(const std::string& name, Argum
                                                   const std::stop_token& stop) const {
   const auto refused = [](const std::string& file, std::string message, std::string hint) {
     document::Problems problems;
-    problems.add({file, {}, "", std::move(message), std::move(hint)});
+    problems.add(
+        {.file = file, .at = {}, .line_text = "", .message = std::move(message), .hint = std::move(hint)});
     return tl::unexpected(std::move(problems));
   };
   if (!is_plain_name(name)) {
@@ -120,13 +121,14 @@ SequenceLoader::Result SequenceLoader::fit(std::optional<control::Sequence> sequ
   if (!prepared || !problems.empty()) return tl::unexpected(std::move(problems));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   if (took.count() > longest_planning_share * prepared->planned_s + planning_slack_s) {
-    problems.warn({sequence->file,
-                   {},
-                   "",
-                   fmt::format("planning took {:.1f} s for {:.1f} s of motion; every start of the sequence "
-                               "is delayed by the planning",
-                               took.count(), prepared->planned_s),
-                   "channels with the same model and limits are planned together"});
+    problems.warn(
+        {.file = sequence->file,
+         .at = {},
+         .line_text = "",
+         .message = fmt::format("planning took {:.1f} s for {:.1f} s of motion; every start of the sequence "
+                                "is delayed by the planning",
+                                took.count(), prepared->planned_s),
+         .hint = "channels with the same model and limits are planned together"});
   }
   auto loaded = std::make_shared<LoadedSequence>();
   loaded->remarks = std::move(problems);

@@ -162,9 +162,12 @@ void SocketApi::greet(ClientId client, const ClientRequest& request) {
   Client& known = clients_[client];
   if (!request.client.empty()) known.name = request.client;
   ok(client, request.id,
-     hello_json(
-         {sources_.provenance.software_version, started_at_, known.role, known.name, seconds(longest_answer)},
-         settings_));
+     hello_json({.software_version = sources_.provenance.software_version,
+                 .started_at = started_at_,
+                 .role = known.role,
+                 .client = known.name,
+                 .longest_answer_s = seconds(longest_answer)},
+                settings_));
 }
 
 void SocketApi::on_opened(ClientId client, Role role) {
@@ -231,7 +234,12 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
         return text.empty() ? loader->load_named(name, parameters, token)
                             : loader->load_text(name, text, parameters, token);
       });
-  planned_ = Planned{client, request.id, load.get_future(), stop, request.start_id, request.dry_run};
+  planned_ = Planned{.client = client,
+                     .id = request.id,
+                     .loaded = load.get_future(),
+                     .stop = stop,
+                     .start_id = request.start_id,
+                     .dry_run = request.dry_run};
   std::thread(std::move(load)).detach();
 }
 
@@ -271,7 +279,9 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
     return;
   }
   const auto number = sources_.service.submit_stop_of(*start, clients_[client].name);
-  wait_for(number, {client, request.id, now + longest_answer, {}, {}});
+  wait_for(
+      number,
+      {.client = client, .id = request.id, .give_up = now + longest_answer, .remarks = {}, .checked = {}});
 }
 
 /// Lists the sequences of the directory. A separate thread reads their files, so that a vent request never
@@ -326,12 +336,13 @@ void SocketApi::loaded(const Planned& planned, SequenceLoader::Result sequence, 
   const auto number =
       ask(planned.client, planned.id, planned.dry_run ? Kind::check : Kind::start, std::move(*sequence), now);
   if (number && !planned.dry_run)
-    starts_.add({*number, planned.start_id, planned.client}, sources_.service.sequence_request());
+    starts_.add({.request = *number, .id = planned.start_id, .client = planned.client},
+                sources_.service.sequence_request());
 }
 
 std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
                                             std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
-  Asked asked{client, id, now + longest_answer, {}, {}};
+  Asked asked{.client = client, .id = id, .give_up = now + longest_answer, .remarks = {}, .checked = {}};
   if (sequence) asked.remarks = sequence->remarks;
   if (kind == Kind::check) asked.checked = sequence;
   const auto number = sources_.service.submit(kind, std::move(sequence), clients_[client].name);
@@ -378,7 +389,7 @@ Json SocketApi::refused_json(control::RefusalCode refusal, const control::Fault&
 
 void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const auto period = static_cast<Nanoseconds>(static_cast<double>(ns_per_s) / request.rate_hz);
-  watches_[client] = {request.id, period, now};
+  watches_[client] = {.id = request.id, .period = period, .due = now};
   ok(client, request.id, {{"rate_hz", request.rate_hz}});
 }
 
