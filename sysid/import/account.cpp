@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "base/enum_table.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -12,29 +14,30 @@ struct Reason {
   /// because they are empty or because the user requested to leave them out.
   bool lost;
 };
-constexpr std::array<Reason, left_out_count> reasons{{
-    {"other_channel", "of another channel", false},
-    {"outside_stretch", "outside the times --from-s and --to-s", false},
-    {"empty", "without content", false},
-    {"bad_line", "in lines that cannot be read", true},
-    {"cut_off_line", "in the incomplete last part of the file", true},
-    {"no_time", "without a time", true},
-    {"repeated_time", "with the time of the previous row", true},
-    {"before_command", "before the first command", true},
-    {"hole", "in shorter segments before or after a gap", true},
-}};
+constexpr auto reasons = enum_table<LeftOut, Reason>({
+    {LeftOut::other_channel, {"other_channel", "of another channel", false}},
+    {LeftOut::outside_stretch, {"outside_stretch", "outside the times --from-s and --to-s", false}},
+    {LeftOut::empty, {"empty", "without content", false}},
+    {LeftOut::bad_line, {"bad_line", "in lines that cannot be read", true}},
+    {LeftOut::cut_off_line, {"cut_off_line", "in the incomplete last part of the file", true}},
+    {LeftOut::no_time, {"no_time", "without a time", true}},
+    {LeftOut::repeated_time, {"repeated_time", "with the time of the previous row", true}},
+    {LeftOut::before_command, {"before_command", "before the first command", true}},
+    {LeftOut::hole, {"hole", "in shorter segments before or after a gap", true}},
+});
+static_assert(reasons.size() == left_out_count);
 
 std::size_t sum_of(const RowAccount& account, bool lost_only) {
   std::size_t sum = 0;
-  for (std::size_t i = 0; i < left_out_count; ++i)
-    sum += lost_only && !reasons[i].lost ? 0 : account.left_out[i];
+  for (const auto& [reason, info] : reasons)
+    sum += lost_only && !info.lost ? 0 : account.left_out[static_cast<std::size_t>(reason)];
   return sum;
 }
 
 }  // namespace
 
 std::string_view word_of(LeftOut reason) {
-  return reasons[static_cast<std::size_t>(reason)].word;
+  return reasons[reason].word;
 }
 
 bool RowAccount::balanced() const {
@@ -56,10 +59,10 @@ std::string RowAccount::sentence() const {
   const std::size_t out = sum_of(*this, false);
   if (out == 0) return text;
   std::string details;
-  for (std::size_t i = 0; i < left_out_count; ++i) {
-    if (left_out[i] > 0)
-      details +=
-          (details.empty() ? "" : ", ") + std::to_string(left_out[i]) + " " + std::string(reasons[i].text);
+  for (const auto& [reason, info] : reasons) {
+    const std::size_t count = left_out[static_cast<std::size_t>(reason)];
+    if (count > 0)
+      details += (details.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(info.text);
   }
   return text + ", " + std::to_string(out) + " left out (" + details + ")";
 }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "base/enum_table.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -161,8 +163,11 @@ std::string unit_names(Quantity quantity) {
 }
 
 std::string_view name_of(Quantity quantity) {
-  constexpr std::array<std::string_view, 4> names{"time", "pressure", "displacement", "temperature"};
-  return names[static_cast<std::size_t>(quantity)];
+  static constexpr auto names = enum_names<Quantity>({{Quantity::time, "time"},
+                                                      {Quantity::pressure, "pressure"},
+                                                      {Quantity::displacement, "displacement"},
+                                                      {Quantity::temperature, "temperature"}});
+  return names[quantity];
 }
 
 NameAndUnit split_unit(std::string_view column, std::optional<Quantity> quantity) {

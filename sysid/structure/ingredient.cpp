@@ -1,26 +1,28 @@
 #include "sysid/structure/ingredient.h"
 
+#include "base/enum_table.h"
+
 namespace softgrip::sysid {
 
 std::string_view name_of(Ingredient ingredient) {
-  constexpr std::array<std::string_view, all_ingredients.size()> names{
-      "hysteresis",
-      "play operators (replaced by Bouc-Wen)",
-      "creep",
-      "slow creep",
-      "dependence of creep on pressure",
-      "delay",
-      "lag",
-      "a second lag",
-      "a rate limit",
-      "delay and lag",
-      "a regulator with overlap (replaced by a lag)",
-      "a separate time constant for venting",
-      "nonlinear characteristic and envelopes",
-      "a resonance",
-      "linear modes",
-      "nonlinear envelopes"};
-  return names[static_cast<std::size_t>(ingredient)];
+  static constexpr auto names =
+      enum_names<Ingredient>({{Ingredient::hysteresis, "hysteresis"},
+                              {Ingredient::play_operators, "play operators (replaced by Bouc-Wen)"},
+                              {Ingredient::creep, "creep"},
+                              {Ingredient::slow_creep, "slow creep"},
+                              {Ingredient::pressure_dependent_creep, "dependence of creep on pressure"},
+                              {Ingredient::delay, "delay"},
+                              {Ingredient::lag, "lag"},
+                              {Ingredient::second_lag, "a second lag"},
+                              {Ingredient::rate_limit, "a rate limit"},
+                              {Ingredient::latency, "delay and lag"},
+                              {Ingredient::regulator, "a regulator with overlap (replaced by a lag)"},
+                              {Ingredient::venting_lag, "a separate time constant for venting"},
+                              {Ingredient::characteristic, "nonlinear characteristic and envelopes"},
+                              {Ingredient::resonance, "a resonance"},
+                              {Ingredient::linear_modes, "linear modes"},
+                              {Ingredient::envelopes, "nonlinear envelopes"}});
+  return names[ingredient];
 }
 
 BaseStructure without(BaseStructure s, Ingredient ingredient) {

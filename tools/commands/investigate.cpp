@@ -139,7 +139,7 @@ std::string completed(const Investigation& investigation, const Playground& grou
 void print_end(const Investigation& investigation, const std::optional<ClosedLoopGain>& gain,
                const std::string& out) {
   std::printf("\n%s\n", sysid::verdict_sentence(investigation.last).c_str());
-  std::printf("%s after %s of %s minutes on the rig%s%s\n", name_of(investigation.end),
+  std::printf("%s after %s of %s minutes on the rig%s%s\n", std::string(name_of(investigation.end)).c_str(),
               significant(investigation.spent_minutes, 3).c_str(),
               significant(investigation.budget_minutes, 3).c_str(), investigation.why.empty() ? "" : ": ",
               investigation.why.c_str());

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/enum_table.h"
 #include "base/numbers.h"
 #include "sysid/diagnosis/causes/contact.h"
 #include "sysid/identification/start_points.h"
@@ -195,26 +196,17 @@ class Investigator {
 
 }  // namespace
 
-const char* name_of(InvestigationEnd end) {
-  switch (end) {
-    case InvestigationEnd::settled:
-      return "settled";
-    case InvestigationEnd::unexplained:
-      return "unexplained";
-    case InvestigationEnd::nothing_left:
-      return "nothing_left";
-    case InvestigationEnd::budget_spent:
-      return "budget_spent";
-    case InvestigationEnd::contact:
-      return "contact";
-    case InvestigationEnd::not_as_asked:
-      return "not_as_asked";
-    case InvestigationEnd::stopped:
-      return "stopped";
-    case InvestigationEnd::failed:
-      return "failed";
-  }
-  return "failed";
+std::string_view name_of(InvestigationEnd end) noexcept {
+  static constexpr auto names =
+      enum_names<InvestigationEnd>({{InvestigationEnd::settled, "settled"},
+                                    {InvestigationEnd::unexplained, "unexplained"},
+                                    {InvestigationEnd::nothing_left, "nothing_left"},
+                                    {InvestigationEnd::budget_spent, "budget_spent"},
+                                    {InvestigationEnd::contact, "contact"},
+                                    {InvestigationEnd::not_as_asked, "not_as_asked"},
+                                    {InvestigationEnd::stopped, "stopped"},
+                                    {InvestigationEnd::failed, "failed"}});
+  return names[end];
 }
 
 tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options) {

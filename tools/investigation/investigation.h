@@ -65,7 +65,8 @@ enum class InvestigationEnd {
   stopped,       ///< the user stopped the investigation
   failed,        ///< an experiment could not be played, or its log could not be read
 };
-[[nodiscard]] const char* name_of(InvestigationEnd end);
+/// Returns the name of an end in JSON and on the screen, for example "settled".
+[[nodiscard]] std::string_view name_of(InvestigationEnd end) noexcept;
 
 /// Name of a step that checks the sensor against a gauge and plays no waveform.
 inline constexpr const char* gauge_check_name = "gauge_check";
