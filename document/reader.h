@@ -120,6 +120,10 @@ class MapReader {
   /// Reports a problem with the value of a key. The caller uses this function for problems that no getter
   /// detects.
   void report(std::string_view key, std::string message, std::string hint = {});
+  /// Reports a problem at a location, for example the location of an item of a list.
+  void report(Location at, std::string message, std::string hint = {}) {
+    problems_.add(document_.problem(at, std::move(message), std::move(hint)));
+  }
   /// Reports a warning about the value of a key that is permitted but probably not meant.
   void warn(std::string_view key, std::string message, std::string hint = {});
   /// Reports keys that were not read and required keys that are missing. No getter may be called after

@@ -3,6 +3,7 @@
 // the list of known keys in hints, and for the table of a reference page.
 
 #include <chrono>
+#include <cmath>
 #include <concepts>
 #include <functional>
 #include <initializer_list>
@@ -99,6 +100,9 @@ void read_map(MapReader& outer, const std::string& name, bool required, const Ke
   if (check) check(reader);
 }
 
+/// The tables of a reference page, with their names.
+using KeyTables = std::vector<std::pair<std::string, std::vector<KeyFacts>>>;
+
 /// Appends the descriptions of the keys for a reference page. The text `map` is put before the name of each
 /// key: "listen: port".
 template <class S>
@@ -107,6 +111,14 @@ void append_facts(std::vector<KeyFacts>& facts, const Keys<S>& keys, const std::
     facts.push_back(key.facts);
     facts.back().name.insert(0, map);
   }
+}
+
+/// Returns the descriptions of the keys of several lists, for one table of a reference page.
+template <class... S>
+std::vector<KeyFacts> facts_of(const Keys<S>&... lists) {
+  std::vector<KeyFacts> facts;
+  (append_facts(facts, lists), ...);
+  return facts;
 }
 
 /// Reads the value of a key. The key is required, or the caller has checked that it is present.
@@ -123,7 +135,7 @@ void read_value(MapReader& reader, std::string_view key, const Allowed& allowed,
   } else if constexpr (std::is_same_v<T, std::chrono::nanoseconds>) {
     value = T(nanoseconds(reader.number(key, allowed.range)));
   } else if constexpr (std::is_same_v<T, std::string>) {
-    value = reader.text(key);
+    value = allowed.words.empty() ? reader.text(key) : allowed.words[reader.choice(key, allowed.words)];
   } else {
     read_value(reader, key, allowed, value.emplace());
   }
@@ -141,7 +153,7 @@ std::string default_text(const T& value, const Allowed& allowed) {
     const auto index = static_cast<std::size_t>(value);
     return in_backticks(allowed.words.empty() ? (value == T{} ? "false" : "true") : allowed.words.at(index));
   } else if constexpr (std::is_arithmetic_v<T>) {
-    return written(static_cast<double>(value));
+    return std::isfinite(static_cast<double>(value)) ? written(static_cast<double>(value)) : "none";
   } else if constexpr (std::is_same_v<T, std::string>) {
     return value.empty() ? "none" : in_backticks(value);
   } else {
@@ -156,7 +168,7 @@ Key<S> required(std::string name, T S::*member, const typename AllowedOf<T>::typ
   std::string values = "a text";
   if constexpr (std::is_same_v<T, bool>)
     values = text_of(allowed.words.empty() ? Allowed{"true", "false"} : allowed);
-  else if constexpr (!std::is_same_v<T, std::string>)
+  else if (!std::is_same_v<T, std::string> || !allowed.words.empty())
     values = text_of(allowed);
   return {{std::move(name), std::move(values), "", std::move(meaning)},
           [member, allowed = Allowed(allowed)](MapReader& reader, const KeyFacts& key, S& settings) {

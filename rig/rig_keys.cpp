@@ -4,6 +4,7 @@ namespace softgrip::rig {
 
 namespace {
 
+using document::facts_of;
 using document::KeyFacts;
 using document::Keys;
 using document::MapReader;
@@ -294,40 +295,35 @@ const RigKeys& rig_keys() {
   return keys;
 }
 
-std::vector<std::pair<std::string, std::vector<KeyFacts>>> rig_tables() {
+document::KeyTables rig_tables() {
   const RigKeys& keys = rig_keys();
-  const auto joined = [](const auto&... parts) {
-    std::vector<KeyFacts> facts;
-    (append_facts(facts, parts), ...);
-    return facts;
-  };
-  return {{"rig", joined(keys.rig)},
-          {"timing", joined(keys.exchange, keys.connecting, keys.budget)},
+  return {{"rig", facts_of(keys.rig)},
+          {"timing", facts_of(keys.exchange, keys.connecting, keys.budget)},
           {"modbus_tcp",
-           joined(keys.module, keys.tcp, keys.habits, keys.framing, keys.rtu_framing, keys.numbering)},
-          {"modbus_rtu", joined(keys.serial, keys.habits, keys.module)},
-          {"iio", joined(keys.iio)},
-          {"terminal", joined(keys.iio_terminal, keys.iio_output)},
-          {"heartbeat", joined(keys.iio_terminal, keys.heartbeat)},
-          {"simulated", joined(keys.seed, keys.simulated, keys.converters)},
-          {"plant", joined(keys.plant)},
-          {"channel", joined(keys.channel, keys.feedforward, keys.rest_pressure, keys.channel_parts)},
-          {"pid", joined(keys.pid)},
-          {"limits", joined(keys.limits)},
-          {"valve", joined(keys.output, keys.valve)},
-          {"sensor", joined(keys.input)},
-          {"safety", joined(keys.safety, keys.commands)},
-          {"faults", joined(keys.faults)},
-          {"plausibility", joined(keys.plausibility)},
-          {"detection", joined(keys.detection)},
-          {"rest", joined(keys.rest)},
-          {"model_health", joined(keys.model_health)},
-          {"loop", joined(keys.loop)},
-          {"real_time", joined(keys.real_time)},
-          {"recorder", joined(keys.recorder)},
-          {"socket", joined(keys.socket)},
-          {"gpio", joined(keys.gpio)},
-          {"line", joined(keys.gpio_line, keys.gpio_input, keys.gpio_enable)}};
+           facts_of(keys.module, keys.tcp, keys.habits, keys.framing, keys.rtu_framing, keys.numbering)},
+          {"modbus_rtu", facts_of(keys.serial, keys.habits, keys.module)},
+          {"iio", facts_of(keys.iio)},
+          {"terminal", facts_of(keys.iio_terminal, keys.iio_output)},
+          {"heartbeat", facts_of(keys.iio_terminal, keys.heartbeat)},
+          {"simulated", facts_of(keys.seed, keys.simulated, keys.converters)},
+          {"plant", facts_of(keys.plant)},
+          {"channel", facts_of(keys.channel, keys.feedforward, keys.rest_pressure, keys.channel_parts)},
+          {"pid", facts_of(keys.pid)},
+          {"limits", facts_of(keys.limits)},
+          {"valve", facts_of(keys.output, keys.valve)},
+          {"sensor", facts_of(keys.input)},
+          {"safety", facts_of(keys.safety, keys.commands)},
+          {"faults", facts_of(keys.faults)},
+          {"plausibility", facts_of(keys.plausibility)},
+          {"detection", facts_of(keys.detection)},
+          {"rest", facts_of(keys.rest)},
+          {"model_health", facts_of(keys.model_health)},
+          {"loop", facts_of(keys.loop)},
+          {"real_time", facts_of(keys.real_time)},
+          {"recorder", facts_of(keys.recorder)},
+          {"socket", facts_of(keys.socket)},
+          {"gpio", facts_of(keys.gpio)},
+          {"line", facts_of(keys.gpio_line, keys.gpio_input, keys.gpio_enable)}};
 }
 
 }  // namespace softgrip::rig

@@ -2,10 +2,6 @@
 // Declares all keys of a rig file: names, permitted values, defaults and meanings. rig_file*.cpp reads the
 // file with these declarations, and docs/reference/rig-file.md contains their tables.
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "document/schema.h"
 #include "rig/rig_file.h"
 
@@ -60,6 +56,6 @@ struct RigKeys {
 void declare_board_keys(RigKeys& keys);
 
 /// Returns the keys of each table of docs/reference/rig-file.md, with the name of the table.
-[[nodiscard]] std::vector<std::pair<std::string, std::vector<document::KeyFacts>>> rig_tables();
+[[nodiscard]] document::KeyTables rig_tables();
 
 }  // namespace softgrip::rig

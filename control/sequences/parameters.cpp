@@ -1,14 +1,13 @@
 #include "control/sequences/parameters.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
 #include "base/numbers.h"
 #include "base/text.h"
+#include "control/sequences/sequence_keys.h"
 #include "document/key_hint.h"
-#include "document/reader.h"
 
 namespace softgrip::control {
 namespace {
@@ -19,9 +18,6 @@ using document::Node;
 using document::Problems;
 
 constexpr std::size_t most_parameters = 16;
-/// Upper limit of the magnitude of all numbers in a sequence.
-constexpr double largest = 1e6;
-constexpr std::array<std::string_view, 6> units{"kpa", "mm", "s", "hz", "kpa_per_s", "mm_per_s"};
 constexpr const char* unit_hint =
     "end the name with its unit (_kpa, _mm, _s, _hz, _kpa_per_s or _mm_per_s), or write `unit: none` for a "
     "number without unit";
@@ -54,23 +50,21 @@ bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// Returns the unit of a parameter. The unit comes from the end of the parameter's name or from its key
+/// Completes the unit of a parameter. The unit comes from the end of the parameter's name or from its key
 /// `unit:`. If both give a unit, the two units must be equal.
-std::string unit_of(MapReader& map, const std::string& name) {
-  const std::string_view own = document::unit_at_end(name);
-  const bool known = std::find(units.begin(), units.end(), own) != units.end();
-  std::vector<std::string> choices(units.begin(), units.end());
-  choices.emplace_back("none");
-  const auto choice = map.optional_choice("unit", choices);
-  if (choice && known && choices[*choice] != own) {
-    map.report("unit", "the name " + document::in_backticks(name) + " ends with a different unit, " +
-                           document::in_backticks(own));
+void complete_unit(MapReader& map, Parameter& parameter) {
+  const std::string_view own = document::unit_at_end(parameter.name);
+  const bool known = std::find(parameter_units.begin(), parameter_units.end(), own) != parameter_units.end();
+  if (!map.has("unit")) {
+    if (known) parameter.unit = own;
+    if (!known)
+      map.report("unit", "the unit of " + document::in_backticks(parameter.name) + " is not stated",
+                 unit_hint);
+  } else if (known && parameter.unit != own) {
+    map.report("unit", "the name " + document::in_backticks(parameter.name) +
+                           " ends with a different unit, " + document::in_backticks(own));
   }
-  if (!choice && !known && !map.has("unit")) {
-    map.report("unit", "the unit of " + document::in_backticks(name) + " is not stated", unit_hint);
-  }
-  if (choice && choices[*choice] == "none") return {};
-  return choice ? choices[*choice] : std::string(known ? own : "");
+  if (parameter.unit == "none") parameter.unit.clear();
 }
 
 Parameter read_parameter(const Document& document, const Node::Entry& entry, Problems& problems) {
@@ -83,12 +77,8 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
                                   "lower-case letters, digits and underscores, as in `squeeze_kpa`"));
   }
   MapReader map(document, entry.value, problems, "parameter " + document::in_backticks(entry.key));
-  parameter.unit = unit_of(map, parameter.name);
-  parameter.about = map.text("about");
-  const std::vector<double> range = map.numbers("range", 2, {-largest, largest});
-  parameter.lower = range[0];
-  parameter.upper = range[1];
-  parameter.default_value = map.number("default", {-largest, largest});
+  read_keys(map, sequence_keys().parameter, parameter);
+  complete_unit(map, parameter);
   parameter.value = parameter.default_value;
   if (map.good("range") && parameter.lower >= parameter.upper) {
     map.report("range", "the first number of `range` must be below the second number");
@@ -97,7 +87,6 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
     map.report("default", "`default` is " + written(parameter.default_value) + ", outside its range of " +
                               written(parameter.lower) + " to " + written(parameter.upper));
   }
-  map.finish();
   return parameter;
 }
 

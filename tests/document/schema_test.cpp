@@ -16,6 +16,7 @@ constexpr auto mode_names =
 
 struct Base {
   std::string path;
+  std::string unit = "mm";
 };
 struct Settings : Base {
   double margin_mm = 0.5;
@@ -38,6 +39,7 @@ Keys<Settings> keys() {
       optional("loud", &Settings::loud, {}, "a switch"),
       optional("mode", &Settings::mode, mode_names, "a mode"),
       optional("latency_us", &Settings::latency_us, {0, 50}, "a time", "no limit"),
+      optional("unit", &Settings::unit, {"mm", "deg"}, "a unit"),
   };
 }
 
@@ -54,7 +56,7 @@ TEST(Schema, StoresAValueOfEachType) {
   const Settings settings = read(
       "path: a/b\nmargin_mm: 2.5\npause_s: 1.001\nby_hand: []\ncount: 7\nactive: low\nloud: false\nmode: "
       "fast\n"
-      "latency_us: 5\n",
+      "latency_us: 5\nunit: deg\n",
       problems);
   EXPECT_EQ(problems.format(), "");
   EXPECT_EQ(settings.path, "a/b");
@@ -65,6 +67,7 @@ TEST(Schema, StoresAValueOfEachType) {
   EXPECT_FALSE(settings.loud);
   EXPECT_EQ(settings.mode, Mode::fast);
   EXPECT_EQ(settings.latency_us, 5);
+  EXPECT_EQ(settings.unit, "deg");
 }
 
 TEST(Schema, AnOmittedOptionalKeyKeepsTheDefault) {
@@ -76,17 +79,19 @@ TEST(Schema, AnOmittedOptionalKeyKeepsTheDefault) {
   EXPECT_TRUE(settings.loud);
   EXPECT_EQ(settings.mode, Mode::slow);
   EXPECT_FALSE(settings.latency_us.has_value());
+  EXPECT_EQ(settings.unit, "mm");
 }
 
 TEST(Schema, ReportsMissingUnknownAndWrongKeysAtOnce) {
   Problems problems;
-  const Settings settings = read("margin_mm: 11\npause: 1\ncount: 0\nmode: fat\n", problems);
+  const Settings settings = read("margin_mm: 11\npause: 1\ncount: 0\nmode: fat\nunit: m\n", problems);
   std::vector<std::string> messages;
   for (const Problem& problem : problems.list()) messages.push_back(problem.message + " / " + problem.hint);
   EXPECT_EQ(messages,
             (std::vector<std::string>{
                 "`margin_mm` is 11, allowed is 0.1 to 10 / ", "`count` is 0, allowed is 1 to 100 / ",
                 "`mode` must be `off`, `slow` or `fast`, found `fat` / did you mean `fast`?",
+                "`unit` must be `mm` or `deg`, found `m` / did you mean `mm`?",
                 "unknown key `pause` in the map / the unit is missing: did you mean `pause_s`?",
                 "the map lacks the key `path` / "}));
   EXPECT_EQ(settings.margin_mm, 10) << "the nearest permitted value";
@@ -94,16 +99,17 @@ TEST(Schema, ReportsMissingUnknownAndWrongKeysAtOnce) {
 
 TEST(Schema, DescribesTheKeysForAPage) {
   std::vector<std::string> rows;
-  for (const Key<Settings>& key : keys()) {
-    rows.push_back(key.facts.name + "|" + key.facts.values + "|" + key.facts.fallback + "|" +
-                   key.facts.meaning);
-    EXPECT_EQ(key.facts.required(), key.facts.fallback.empty());
+  const Keys<Base> other{required("file", &Base::path, {}, "a file")};
+  for (const KeyFacts& key : facts_of(keys(), other)) {
+    rows.push_back(key.name + "|" + key.values + "|" + key.fallback + "|" + key.meaning);
+    EXPECT_EQ(key.required(), key.fallback.empty());
   }
   EXPECT_EQ(rows, (std::vector<std::string>{
                       "path|a text||a file", "margin_mm|0.1 to 10||a margin", "pause_s|0 to 60||a pause",
                       "by_hand|a list|none|read by the caller", "count|1 to 100|3|a count",
                       "active|`high` or `low`|`high`|a level", "loud|`true` or `false`|`true`|a switch",
-                      "mode|`off`, `slow` or `fast`|`slow`|a mode", "latency_us|0 to 50|no limit|a time"}));
+                      "mode|`off`, `slow` or `fast`|`slow`|a mode", "latency_us|0 to 50|no limit|a time",
+                      "unit|`mm` or `deg`|`mm`|a unit", "file|a text||a file"}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "control/sequences/sequence_keys.h"
 #include "rig/plc_file/settings.h"
 #include "rig/rig_keys.h"
 #include "rig/web_file/settings.h"
@@ -17,16 +18,15 @@
 namespace softgrip::rig {
 namespace {
 
-using Tables = std::vector<std::pair<std::string, std::vector<document::KeyFacts>>>;
-
 struct Page {
   std::string name;
-  Tables tables;
+  document::KeyTables tables;
 };
 
 std::vector<Page> pages() {
   const std::string docs = std::string(SOFTGRIP_SOURCE_DIR) + "/docs/";
   return {{docs + "reference/rig-file.md", rig_tables()},
+          {docs + "reference/sequence-file.md", control::sequence_tables()},
           {docs + "reference/plc-map.md", {{"file", plc::file_keys()}}},
           {docs + "how-to/operator-page.md", {{"file", web::file_keys()}}}};
 }

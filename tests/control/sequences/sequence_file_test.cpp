@@ -86,12 +86,13 @@ steps:
   - release: {pressure_kpa: 3, duration_s: 0.5, purge_s: 0.7, timeout_s: 4, on_fail: abort}
   - track: {mean_mm: 13, amplitude_mm: 7, frequency_hz: 0.1, cycles: 5}
   - pressure: {signal: sp2, scale: 0.5, cycles: 2}
+  - pressure: {points: [{time_s: 0, pressure_kpa: 5}, {time_s: 2, pressure_kpa: 9}, {time_s: 3, pressure_kpa: 5}]}
 )",
                              problems);
   ASSERT_TRUE(sequence) << problems.format();
   EXPECT_EQ(sequence->interlock, Interlock::always);
   EXPECT_EQ(sequence->channels, std::vector<std::string>{"left"});
-  ASSERT_EQ(sequence->steps.size(), 6U);
+  ASSERT_EQ(sequence->steps.size(), 7U);
   const Step& move = sequence->steps[0];
   EXPECT_EQ(move.name, "near");
   EXPECT_EQ(move.target.quantity, Target::Quantity::displacement_mm);
@@ -113,7 +114,10 @@ steps:
   EXPECT_EQ(sequence->steps[3].purge_s, 0.7);
   EXPECT_EQ(sequence->steps[4].sine.cycles, 5U);
   EXPECT_EQ(sequence->steps[5].profile.signal, model::SignalName::sp2);
+  EXPECT_EQ(sequence->steps[5].profile.scale, 0.5);
   EXPECT_EQ(sequence->steps[5].profile.cycles, 2U);
+  EXPECT_FALSE(sequence->steps[6].profile.signal);
+  EXPECT_EQ(sequence->steps[6].profile.points, (std::vector<Point>{{0, 5}, {2, 9}, {3, 5}}));
 }
 
 /// Returns a pressure step with `count` points at intervals of 1 s.
@@ -240,6 +244,18 @@ INSTANTIATE_TEST_SUITE_P(
             "twice",
             "name: x\nchannels: [a, a]\nsteps:\n  - hold: {hold_s: 1, reverify_every_s: 1, on_fail: vent}\n",
             2, "listed twice"},
+        Broken{"misspelled_channels", "name: x\nchanels: [a]\nsteps:\n  - pressure: {signal: tp1}\n", 2,
+               "did you mean `channels`?"},
+        Broken{"misspelled_displacement", with_step("move: {displacment_mm: 5, duration_s: 1}"), 3,
+               "did you mean `displacement_mm`?"},
+        Broken{"scale_without_signal",
+               with_step("pressure: {scale: 2, points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, "
+                         "pressure_kpa: 1}]}"),
+               3, "unknown key `scale`"},
+        Broken{
+            "pressure_of_a_point",
+            with_step("pressure: {points: [{time_s: 0, pressure_kpa: 5}, {time_s: 2, pressure_kpa: 1001}]}"),
+            3, "`pressure_kpa` is 1001, allowed is -100 to 1000"},
         Broken{"kind_like_no_other", with_step("xyzzyxyzzy: {}"), 3, "unknown kind of step 'xyzzyxyzzy'"},
         Broken{"step_that_is_a_list", with_step("[move]"), 3, "one key"},
         Broken{"too_many_steps", with_steps(201), 3, "more than 200 steps"},
