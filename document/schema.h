@@ -47,13 +47,14 @@ struct AllowedOf {
 template <class T>
 struct AllowedOf<std::optional<T>> : AllowedOf<T> {};
 
-/// Description of a key for a reference page.
+/// Description of a key, for its reader and for a reference page.
 struct KeyFacts {
   std::string name;
   std::string values;    ///< permitted values, for example "0.001 to 100"
   std::string fallback;  ///< value that is used if the key is omitted, for example "0.1"; empty: the key is
                          ///< required
   std::string meaning;
+  Allowed allowed{};
 
   [[nodiscard]] bool required() const noexcept { return fallback.empty(); }
 };
@@ -62,13 +63,14 @@ struct KeyFacts {
 template <class S>
 struct Key {
   KeyFacts facts;
+  /// Reads a required key, or an optional key that the map contains.
   std::function<void(MapReader& reader, const KeyFacts& facts, S& settings)> read;
 
   Key(KeyFacts described, decltype(read) reading) : facts(std::move(described)), read(std::move(reading)) {}
   /// Declares a key whose value the caller reads. read_keys() marks such a key as known, but does not read
   /// its value.
   Key(std::string name, std::string values, std::string fallback, std::string meaning)
-      : facts{std::move(name), std::move(values), std::move(fallback), std::move(meaning)},
+      : facts{std::move(name), std::move(values), std::move(fallback), std::move(meaning), {}},
         read([](MapReader& reader, const KeyFacts& key, S&) {
           (void)reader.child(key.name, key.required());
         }) {}
@@ -84,7 +86,9 @@ using Keys = std::vector<Key<S>>;
 /// `settings` keeps its value.
 template <class S>
 void read_keys(MapReader& reader, const Keys<S>& keys, S& settings) {
-  for (const Key<S>& key : keys) key.read(reader, key.facts, settings);
+  for (const Key<S>& key : keys)
+    if (key.facts.required() || reader.child(key.facts.name, false) != nullptr)
+      key.read(reader, key.facts, settings);
 }
 
 /// Reads the map under `name` of the map `outer` into `settings`, then calls `check` for keys and conditions
@@ -165,14 +169,12 @@ std::string default_text(const T& value, const Allowed& allowed) {
 template <class S, class T>
 Key<S> required(std::string name, T S::*member, const typename AllowedOf<T>::type& allowed,
                 std::string meaning) {
-  std::string values = "a text";
-  if constexpr (std::is_same_v<T, bool>)
-    values = text_of(allowed.words.empty() ? Allowed{"true", "false"} : allowed);
-  else if (!std::is_same_v<T, std::string> || !allowed.words.empty())
-    values = text_of(allowed);
-  return {{std::move(name), std::move(values), "", std::move(meaning)},
-          [member, allowed = Allowed(allowed)](MapReader& reader, const KeyFacts& key, S& settings) {
-            read_value(reader, key.name, allowed, settings.*member);
+  std::string values = text_of(allowed);
+  if (std::is_same_v<T, bool> && allowed.words.empty()) values = "`true` or `false`";
+  if (std::is_same_v<T, std::string> && allowed.words.empty()) values = "a text";
+  return {{std::move(name), std::move(values), "", std::move(meaning), Allowed(allowed)},
+          [member](MapReader& reader, const KeyFacts& key, S& settings) {
+            read_value(reader, key.name, key.allowed, settings.*member);
           }};
 }
 
@@ -181,11 +183,10 @@ Key<S> required(std::string name, T S::*member, const typename AllowedOf<T>::typ
 template <class S, class T>
 Key<S> optional(std::string name, T S::*member, const typename AllowedOf<T>::type& allowed,
                 std::string meaning, std::string fallback = "") {
+  static const S defaults{};
   Key<S> key = required(std::move(name), member, allowed, std::move(meaning));
-  key.facts.fallback = fallback.empty() ? default_text(S{}.*member, allowed) : std::move(fallback);
-  key.read = [read = std::move(key.read)](MapReader& reader, const KeyFacts& facts, S& settings) {
-    if (reader.child(facts.name, false) != nullptr) read(reader, facts, settings);
-  };
+  key.facts.fallback =
+      fallback.empty() ? default_text(defaults.*member, key.facts.allowed) : std::move(fallback);
   return key;
 }
 
