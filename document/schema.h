@@ -190,4 +190,13 @@ Key<S> optional(std::string name, T S::*member, const typename AllowedOf<T>::typ
   return key;
 }
 
+/// Creates a key of `S` from a key of its member `part`.
+template <class S, class Part>
+Key<S> within(Part S::*part, Key<Part> key) {
+  return {std::move(key.facts),
+          [part, read = std::move(key.read)](MapReader& reader, const KeyFacts& facts, S& settings) {
+            read(reader, facts, settings.*part);
+          }};
+}
+
 }  // namespace softgrip::document

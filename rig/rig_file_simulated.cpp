@@ -52,13 +52,15 @@ using Event = simulation::SimulatedEvent;
 void read_line_fault(MapReader& reader, Event& event) {
   event.kind = Event::Kind::line_fault;
   event.line.kind = reader.choice("line", simulation::line_fault_names);
-  simulation::read_own_keys(reader, event.line);
+  if (event.line.kind == simulation::LineFault::Kind::leaking)
+    document::read_keys(reader, {simulation::leak_key()}, event.line);
 }
 
 void read_sensor_fault(MapReader& reader, Event& event) {
   event.kind = Event::Kind::sensor_fault;
   event.sensor.kind = reader.choice("sensor", simulation::sensor_fault_names);
-  simulation::read_own_keys(reader, event.sensor, "value_mm");
+  if (event.sensor.kind == simulation::SensorFault::Kind::offset)
+    document::read_keys(reader, {simulation::offset_key("value_mm")}, event.sensor);
 }
 
 void read_object_event(Context& context, MapReader& reader, Event& event) {

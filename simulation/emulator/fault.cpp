@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/enum_table.h"
-#include "document/reader.h"
 #include "drivers/modbus/modbus_request.h"
 #include "simulation/plant/fault_reader.h"
 
@@ -34,62 +33,57 @@ constexpr auto kind_names = enum_names<FaultKind>({{FaultKind::lost_request, "lo
                                                    {FaultKind::line_leaking, "line_leaking"},
                                                    {FaultKind::object_removed, "object_removed"}});
 
-constexpr double longest_s = 86400;
-
 /// Shortest duration and shortest interval that a faults file may contain [s].
 constexpr double shortest_s = 1e-4;
 
-document::Range up_to(double upper) {
-  return {0, upper};
+using document::Keys;
+using document::optional;
+using document::required;
+using document::within;
+
+/// The keys of a fault; `own` are the keys of single kinds of faults.
+struct FaultKeys {
+  Keys<FaultSpec> fault, on_the_wire, of_a_channel;
+  std::vector<std::pair<FaultKind, Keys<FaultSpec>>> own;
+};
+
+const FaultKeys& fault_keys() {
+  using Kind = FaultKind;
+  using F = FaultSpec;
+  constexpr document::Range stray{0, drivers::max_pdu};
+  static const FaultKeys keys{
+      {required("name", &F::name, {}, "unique name of the fault"),
+       required("kind", &F::kind, kind_names, "kind of the fault, see below"),
+       optional("at_s", &F::at_s, {0, 86400}, "start after the first command to an output", "no start"),
+       optional("for_s", &F::for_s, {shortest_s, 86400}, "duration", "until the fault is cleared")},
+      {optional("replies", &F::replies, {1, 1'000'000},
+                "only for communication faults: the fault ends after this number of affected requests")},
+      {{"channel", "name of a channel", "all channels", "only for faults of a channel: affected channel"}},
+      {{Kind::late_reply, {required("delay_s", &F::delay_s, {0, 60}, "delay of each reply")}},
+       {Kind::dripped_reply, {required("interval_s", &F::interval_s, {0, 60}, "time between two bytes")}},
+       {Kind::exception_reply, {required("code", &F::code, {1, 255}, "code of the Modbus exception")}},
+       {Kind::settling, {required("settle_s", &F::settle_s, {0, 60}, "time in which requests are lost")}},
+       {Kind::few_registers,
+        {required("most", &F::most, {1, drivers::max_read_registers}, "largest number of registers")}},
+       {Kind::stray_bytes,
+        {required("before", &F::before, stray, "number of bytes before each reply"),
+         required("behind", &F::behind, stray, "number of bytes after each reply")}},
+       {Kind::sensor_jumping,
+        {required("interval_s", &F::interval_s, {shortest_s, 60}, "duration of an interval"),
+         within(&F::sensor, offset_key("by_mm"))}},
+       {Kind::line_leaking, {within(&F::line, leak_key())}}}};
+  return keys;
 }
 
-/// Reads the keys of the fault that other kinds of faults do not have.
-void read_own_keys(FaultSpec& fault, document::MapReader& map) {
-  switch (fault.kind) {
-    case FaultKind::late_reply:
-      fault.delay_s = map.number("delay_s", up_to(60));
-      break;
-    case FaultKind::dripped_reply:
-      fault.interval_s = map.number("interval_s", up_to(60));
-      break;
-    case FaultKind::exception_reply:
-      fault.code = static_cast<std::uint8_t>(map.integer("code", {1, 255}));
-      break;
-    case FaultKind::settling:
-      fault.settle_s = map.number("settle_s", up_to(60));
-      break;
-    case FaultKind::few_registers:
-      fault.most = static_cast<std::uint16_t>(map.integer("most", {1, drivers::max_read_registers}));
-      break;
-    case FaultKind::stray_bytes:
-      fault.before = static_cast<std::uint16_t>(map.integer("before", {0, drivers::max_pdu}));
-      fault.behind = static_cast<std::uint16_t>(map.integer("behind", {0, drivers::max_pdu}));
-      break;
-    case FaultKind::sensor_jumping:
-      fault.interval_s = map.number("interval_s", {shortest_s, 60});
-      break;
-    default:
-      break;
-  }
-  read_own_keys(map, fault.line);
-  read_own_keys(map, fault.sensor, "by_mm");
-}
-
-FaultSpec read_fault(const document::Document& document, const document::Node& node,
-                     const std::vector<std::string>& channels, document::Problems& problems) {
-  document::MapReader map(document, node, problems, "fault");
-  std::string name = map.text("name");
-  FaultSpec fault = fault_of(map.choice("kind", kind_names));
-  fault.name = std::move(name);
-  fault.at_s = map.optional_number("at_s", up_to(longest_s));
-  fault.for_s = map.optional_number("for_s", document::Range{shortest_s, longest_s});
-  if (on_the_wire(fault.kind)) {
-    if (const auto replies = map.optional_integer("replies", {1, 1'000'000})) {
-      fault.replies = static_cast<std::uint32_t>(*replies);
-    }
-  }
+FaultSpec read_fault(document::MapReader map, const std::vector<std::string>& channels) {
+  FaultSpec fault;
+  read_keys(map, fault_keys().fault, fault);
+  fault.line = fault_of(fault.kind).line;
+  fault.sensor = fault_of(fault.kind).sensor;
+  if (on_the_wire(fault.kind)) read_keys(map, fault_keys().on_the_wire, fault);
   if (of_a_channel(fault.kind)) fault.channel = map.optional_choice("channel", channels);
-  read_own_keys(fault, map);
+  for (const auto& [kind, keys] : fault_keys().own)
+    if (kind == fault.kind) read_keys(map, keys, fault);
   return fault;
 }
 
@@ -112,15 +106,27 @@ FaultSpec fault_of(FaultKind kind) {
   return fault;
 }
 
+std::vector<document::KeyFacts> faults_file_keys() {
+  const FaultKeys& all = fault_keys();
+  std::vector<document::KeyFacts> facts = facts_of(all.fault, all.on_the_wire, all.of_a_channel);
+  for (const auto& [kind, keys] : all.own) {
+    for (document::KeyFacts& key : facts_of(keys)) {
+      key.meaning = "only for `" + std::string(name_of(kind)) + "`: " + key.meaning;
+      facts.push_back(std::move(key));
+    }
+  }
+  return facts;
+}
+
 std::vector<FaultSpec> read_faults(const document::Document& document,
                                    const std::vector<std::string>& channels, document::Problems& problems) {
   document::MapReader map(document, document.root, problems, "faults file");
   std::vector<FaultSpec> faults;
   for (const document::Node* node : map.sequence("faults", true)) {
-    FaultSpec fault = read_fault(document, *node, channels, problems);
+    FaultSpec fault = read_fault(map.inner(*node, "fault"), channels);
     const bool taken = std::any_of(faults.begin(), faults.end(),
                                    [&](const FaultSpec& other) { return other.name == fault.name; });
-    if (taken) problems.add(document.problem(node->at, "fault '" + fault.name + "' is defined twice"));
+    if (taken) map.report(node->at, "fault '" + fault.name + "' is defined twice");
     faults.push_back(std::move(fault));
   }
   return faults;

@@ -10,12 +10,7 @@
 //       interval_s: 0.05
 //
 // The fault begins at_s seconds after the first command to an output. Without at_s, the fault begins only
-// when a control command triggers it. The fault ends after for_s seconds. Without for_s, the fault lasts
-// until a control command clears it. A fault of the transmission with the key `replies` also ends after this
-// number of affected requests. The remaining keys, such as interval_s, depend on the kind of the fault and
-// are required.
-//
-// docs/reference/emulator.md describes the file.
+// when a control command triggers it. docs/reference/emulator.md describes the file.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +21,10 @@
 
 #include "document/node.h"
 #include "simulation/plant/plant.h"
+
+namespace softgrip::document {
+struct KeyFacts;
+}
 
 namespace softgrip::simulation {
 
@@ -93,6 +92,9 @@ struct FaultSpec {
 
 /// Returns a fault of this kind with default values and without a name.
 [[nodiscard]] FaultSpec fault_of(FaultKind kind);
+
+/// Returns all keys of a fault in a faults file.
+[[nodiscard]] std::vector<document::KeyFacts> faults_file_keys();
 
 /// Reads a faults file for a rig with the channels `channels`. Adds the problems of the file to `problems`.
 /// The result may only be used if no problem was added.

@@ -7,12 +7,13 @@ constexpr document::Range reach_mm{-1000, 1000};
 
 }  // namespace
 
-void read_own_keys(document::MapReader& reader, LineFault& fault) {
-  if (fault.kind == LineFault::Kind::leaking) fault.share = reader.number("share", {0, 1});
+document::Key<LineFault> leak_key() {
+  return document::required("share", &LineFault::share, {0, 1},
+                            "share of the commanded pressure that is lost");
 }
 
-void read_own_keys(document::MapReader& reader, SensorFault& fault, std::string_view offset_key) {
-  if (fault.kind == SensorFault::Kind::offset) fault.value_mm = reader.number(offset_key, reach_mm);
+document::Key<SensorFault> offset_key(std::string name) {
+  return document::required(std::move(name), &SensorFault::value_mm, reach_mm, "offset of the reading");
 }
 
 PlantObject read_object(const document::Document& document, const document::Node& node,

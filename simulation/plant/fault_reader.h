@@ -1,19 +1,19 @@
 #pragma once
-// Reads the faults of a finger from YAML. The events of a rig file and the faults file of the emulator have
-// the same keys with the same limits.
+// Declares the keys of the faults of a finger. The events of a rig file and the faults file of the emulator
+// have the same keys with the same limits.
 
-#include <string_view>
+#include <string>
 
-#include "document/reader.h"
+#include "document/schema.h"
 #include "simulation/plant/plant.h"
 
 namespace softgrip::simulation {
 
-/// Reads the keys that depend on the kind of a line fault: `share` for a leak.
-void read_own_keys(document::MapReader& reader, LineFault& fault);
-/// Reads the keys that depend on the kind of a sensor fault: for an offset, the size of the offset [mm] under
-/// the key `offset_key`.
-void read_own_keys(document::MapReader& reader, SensorFault& fault, std::string_view offset_key);
+/// Returns the key of a leak, which the line fault `leaking` requires.
+[[nodiscard]] document::Key<LineFault> leak_key();
+/// Returns the key with the name `name` for the size of an offset [mm], which the sensor fault `offset`
+/// requires.
+[[nodiscard]] document::Key<SensorFault> offset_key(std::string name);
 /// Reads an object with the keys `position_mm` and `yielding`.
 [[nodiscard]] PlantObject read_object(const document::Document& document, const document::Node& node,
                                       document::Problems& problems);

@@ -97,6 +97,24 @@ TEST(Schema, ReportsMissingUnknownAndWrongKeysAtOnce) {
   EXPECT_EQ(settings.margin_mm, 10) << "the nearest permitted value";
 }
 
+TEST(Schema, AKeyOfAMemberIsStoredInThisMember) {
+  struct Outer {
+    Base left, right;
+  };
+  Problems problems;
+  const Document document = parse("file.yaml", "path: a\nunit: deg\n", problems);
+  Outer outer;
+  {
+    MapReader reader(document, document.root, problems, "the map");
+    read_keys(reader,
+              Keys<Outer>{within(&Outer::right, required("path", &Base::path, {}, "a file")),
+                          within(&Outer::left, optional("unit", &Base::unit, {"mm", "deg"}, "a unit"))},
+              outer);
+  }
+  EXPECT_EQ(problems.format(), "");
+  EXPECT_EQ(outer.left.path + outer.left.unit + outer.right.path + outer.right.unit, "degamm");
+}
+
 TEST(Schema, DescribesTheKeysForAPage) {
   std::vector<std::string> rows;
   const Keys<Base> other{required("file", &Base::path, {}, "a file")};

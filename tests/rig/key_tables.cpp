@@ -14,6 +14,7 @@
 #include "rig/plc_file/settings.h"
 #include "rig/rig_keys.h"
 #include "rig/web_file/settings.h"
+#include "simulation/emulator/fault.h"
 
 namespace softgrip::rig {
 namespace {
@@ -27,6 +28,7 @@ std::vector<Page> pages() {
   const std::string docs = std::string(SOFTGRIP_SOURCE_DIR) + "/docs/";
   return {{docs + "reference/rig-file.md", rig_tables()},
           {docs + "reference/sequence-file.md", control::sequence_tables()},
+          {docs + "reference/emulator.md", {{"fault", simulation::faults_file_keys()}}},
           {docs + "reference/plc-map.md", {{"file", plc::file_keys()}}},
           {docs + "how-to/operator-page.md", {{"file", web::file_keys()}}}};
 }
