@@ -71,7 +71,7 @@ void read_on_contact(MapReader& map, Step& step, OnContact otherwise) {
   step.on_contact_stated = map.has("on_contact");
   read_keys(map, sequence_keys().on_contact, step);
   if (step.on_contact == OnContact::fail && !step.tolerance_mm)
-    read_keys(map, sequence_keys().attempts, step);
+    read_keys(map, sequence_keys().failing_contact, step);
 }
 
 /// Reads a move. A move with a tolerance can fail. Therefore, the file must give on_fail for such a move.
@@ -81,8 +81,7 @@ void read_move(MapReader& map, Step& step) {
   if (step.tolerance_mm) {
     if (step.target.quantity != Target::Quantity::displacement_mm)
       map.report("tolerance_mm", "tolerance_mm requires a target in displacement_mm");
-    read_keys(map, sequence_keys().timeout, step);
-    read_keys(map, sequence_keys().attempts, step);
+    read_keys(map, sequence_keys().tolerance, step);
   }
   read_keys(map, sequence_keys().bounds, step.bounds);
   read_on_contact(map, step, step.tolerance_mm ? OnContact::fail : OnContact::hold);
@@ -133,8 +132,6 @@ void read_grip(MapReader& map, Step& step) {
   read_keys(map, keys.grip, step);
   read_map(map, "verify", true, keys.verify, step.verify,
            [&](MapReader& inner) { read_evidence(inner, step.verify); });
-  read_keys(map, keys.timeout, step);
-  read_keys(map, keys.attempts, step);
 }
 
 void read_hold(MapReader& map, Step& step) {
@@ -147,7 +144,6 @@ void read_hold(MapReader& map, Step& step) {
   (void)map.child("hold_s", !until);
   read_keys(map, keys.bounds, step.bounds);
   read_keys(map, keys.hold, step);
-  read_keys(map, keys.on_fail, step);
 }
 
 void read_release(MapReader& map, Step& step) {
@@ -155,8 +151,6 @@ void read_release(MapReader& map, Step& step) {
   read_keys(map, sequence_keys().release_kpa, step.target);
   read_ramp(map, step.target);
   read_keys(map, sequence_keys().release, step);
-  read_keys(map, sequence_keys().timeout, step);
-  read_keys(map, sequence_keys().on_fail, step);
 }
 
 /// Reads the points of a pressure profile. The number of points has no limit of its own; the largest number

@@ -79,19 +79,23 @@ void declare_motion(SequenceKeys& keys) {
 }
 
 void declare_steps(SequenceKeys& keys) {
-  keys.timeout = {required("timeout_s", &Step::timeout_s, short_s, "time limit for passing the step")};
-  keys.on_fail = {
+  const auto timeout = required("timeout_s", &Step::timeout_s, short_s, "time limit for passing the step");
+  const auto retries = optional("retries", &Step::retries, {0, 10}, "number of repetitions of a failed step");
+  const auto on_fail =
       required("on_fail", &Step::on_fail,
                names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on}),
-               "reaction if the last attempt fails")};
-  keys.attempts = {optional("retries", &Step::retries, {0, 10}, "number of repetitions of a failed step"),
-                   keys.on_fail.front()};
+               "[reaction](#when-a-step-fails) if the last attempt fails");
+  keys.tolerance = {timeout, retries, on_fail};
+  keys.failing_contact = {retries, on_fail};
   const std::string settling = "waiting time after the ramp";
   keys.move = {optional("settle_s", &Step::settle_s, short_s, settling),
                optional("tolerance_mm", &Step::tolerance_mm, {0.01, 50},
                         "largest distance from `displacement_mm` during `settle_s`")};
   keys.grip = {required("settle_s", &Step::settle_s, short_s, settling),
-               {"verify", "map", "", "[verification of the grip](#verification)"}};
+               {"verify", "map", "", "[verification of the grip](#verification)"},
+               timeout,
+               retries,
+               on_fail};
   keys.squeeze = {
       optional("squeeze_kpa", &Squeeze::by_kpa, squeeze_kpa, "gripping pressure after contact", "none"),
       optional("squeeze_speed_kpa_per_s", &Squeeze::speed_kpa_per_s, speed,
@@ -109,8 +113,10 @@ void declare_steps(SequenceKeys& keys) {
       optional("pressure_min_kpa", &Verify::pressure_min_kpa, kpa, "lowest pressure with a part", "none")};
   keys.hold_time = {{"until", "`release`", "none", "in place of `hold_s`: hold until a release is requested"},
                     optional("hold_s", &Step::hold_s, long_s, "duration of the step", "none")};
-  keys.hold = {required("reverify_every_s", &Step::reverify_every_s, window_s, "interval of verifications")};
-  keys.release = {required("purge_s", &Step::purge_s, short_s, "time at the rest pressure after the ramp")};
+  keys.hold = {required("reverify_every_s", &Step::reverify_every_s, window_s, "interval of verifications"),
+               on_fail};
+  keys.release = {required("purge_s", &Step::purge_s, short_s, "time at the rest pressure after the ramp"),
+                  timeout, on_fail};
 }
 
 void declare_profiles(SequenceKeys& keys) {
@@ -149,14 +155,14 @@ document::KeyTables sequence_tables() {
           {"target", facts_of(keys.target_mm, keys.target_kpa, keys.ramp)},
           {"bounds", facts_of(keys.bounds, keys.on_contact)},
           {"move", facts_of(keys.move)},
+          {"tolerance", facts_of(keys.tolerance)},
           {"grip", facts_of(keys.grip, keys.squeeze)},
           {"verify", facts_of(keys.verify, keys.verify_position, keys.verify_pressure)},
           {"hold", facts_of(keys.hold_time, keys.hold)},
           {"release", facts_of(keys.release_kpa, keys.release)},
           {"track", facts_of(keys.track)},
           {"pressure", facts_of(keys.signal, keys.scale, keys.points, keys.cycles)},
-          {"point", facts_of(keys.point)},
-          {"failure", facts_of(keys.timeout, keys.attempts)}};
+          {"point", facts_of(keys.point)}};
 }
 
 }  // namespace softgrip::control

@@ -26,7 +26,7 @@ struct SequenceKeys {
   Keys<Step> step;  ///< keys of every kind of step
   Keys<Target> target_mm, target_kpa, ramp, release_kpa;
   Keys<Bounds> bounds;
-  Keys<Step> on_contact, timeout, attempts, on_fail, move, grip, hold_time, hold, release;
+  Keys<Step> on_contact, failing_contact, move, tolerance, grip, hold_time, hold, release;
   Keys<Squeeze> squeeze;
   Keys<Verify> verify, verify_position, verify_pressure;
   Keys<Sine> track;
