@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -80,20 +79,6 @@ class MapReader {
   template <class Enum, std::size_t count>
   Enum choice(std::string_view key, const EnumTable<Enum, std::string_view, count>& names) {
     return static_cast<Enum>(choice(key, names.names()));
-  }
-  template <class Enum, std::size_t count>
-  std::optional<Enum> optional_choice(std::string_view key,
-                                      const EnumTable<Enum, std::string_view, count>& names) {
-    return given(key) ? std::optional(choice(key, names)) : std::nullopt;
-  }
-  /// Reads the name of one of the values `permitted`.
-  template <class Enum, std::size_t count>
-  std::optional<Enum> optional_choice(std::string_view key,
-                                      const EnumTable<Enum, std::string_view, count>& names,
-                                      std::span<const Enum> permitted) {
-    std::vector<std::string> choices;
-    for (const Enum value : permitted) choices.emplace_back(names[value]);
-    return given(key) ? std::optional(permitted[choice(key, choices)]) : std::nullopt;
   }
   /// Returns the node under a key; the node may be of any kind. Returns nullptr if the key is absent, and
   /// reports a problem in this case if `required` is true.

@@ -34,11 +34,16 @@ struct Allowed {
   std::vector<std::string> words;
 };
 
-/// The permitted values of a key with the type `Enum`: the names of all values.
+/// The permitted values of a key with the type `Enum`: the names of all values, or of all values up to
+/// `last`.
 template <class Enum>
 struct AllowedNames : Allowed {
   template <std::size_t count>
-  AllowedNames(const EnumTable<Enum, std::string_view, count>& names) : Allowed(names.names()) {}
+  AllowedNames(const EnumTable<Enum, std::string_view, count>& names,
+               Enum last = static_cast<Enum>(count - 1))
+      : Allowed(names.names()) {
+    words.resize(static_cast<std::size_t>(last) + 1);
+  }
 };
 template <class T>
 struct AllowedOf {

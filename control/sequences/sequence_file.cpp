@@ -207,9 +207,7 @@ void read_body(MapReader& map, Step& step) {
 }
 
 Step read_step(MapReader& sequence, const Node& node, std::size_t number) {
-  std::vector<std::string> kinds;
-  for (int kind = 0; kind <= static_cast<int>(StepKind::pressure); ++kind)
-    kinds.emplace_back(name_of(static_cast<StepKind>(kind)));
+  static const std::vector<std::string> kinds = step_names.names();
   Step step;
   step.at = node.at;
   const std::string shape = "a step is a list item with one key: " + enumerated(kinds, " or ");
@@ -218,14 +216,14 @@ Step read_step(MapReader& sequence, const Node& node, std::size_t number) {
     return step;
   }
   const Node::Entry& entry = node.entries.front();
-  const auto kind = std::find(kinds.begin(), kinds.end(), entry.key);
-  if (kind == kinds.end()) {
+  const std::optional<StepKind> kind = step_names.find(entry.key);
+  if (!kind) {
     const std::string near = document::nearest(entry.key, kinds);
     sequence.report(entry.key_at, "unknown kind of step '" + entry.key + "'; " + shape,
                     near.empty() ? "" : "did you mean '" + near + "'?");
     return step;
   }
-  step.kind = static_cast<StepKind>(kind - kinds.begin());
+  step.kind = *kind;
   step.name = entry.key;
   MapReader map = sequence.inner(entry.value, "step " + std::to_string(number) + " (" + entry.key + ")");
   read_keys(map, sequence_keys().step, step);

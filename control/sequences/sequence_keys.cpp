@@ -27,19 +27,12 @@ const Allowed cycles{1, 10'000};
 /// Range of all numbers of a parameter.
 const Allowed any_number{-1e6, 1e6};
 
-template <class Enum>
-std::vector<std::string> names(std::initializer_list<Enum> values) {
-  std::vector<std::string> list;
-  for (const Enum value : values) list.emplace_back(name_of(value));
-  return list;
-}
-
 void declare_file(SequenceKeys& keys) {
   keys.sequence = {
       required("name", &Sequence::name, {}, "name of the sequence"),
       optional("about", &Sequence::about, {}, "one line of description"),
       {"channels", "list of names", "all fingers of the rig", "names of the fingers that take part"},
-      optional("interlock", &Sequence::interlock, {"start", "always"},
+      optional("interlock", &Sequence::interlock, interlock_names,
                "`start`: an open interlock refuses the start. `always`: it also stops the running sequence"),
       {"parameters", "map", "none", "at most 16 [parameters](#parameters), which a start request may set"},
       {"steps", "list", "", "1 to 200 [steps](#kinds-of-steps)"}};
@@ -73,18 +66,15 @@ void declare_motion(SequenceKeys& keys) {
                "highest command; a value below the `rest_kpa` of the channel is an error"),
       optional("squeeze_max_kpa", &Bounds::squeeze_max_kpa, squeeze_kpa,
                "highest difference of the command and the free-motion pressure at the present displacement")};
-  keys.on_contact = {optional("on_contact", &Step::on_contact,
-                              names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}),
+  keys.on_contact = {optional("on_contact", &Step::on_contact, {on_contact_names, OnContact::ignore},
                               "only for `move`, `track` and `pressure`: reaction to contact", "see below")};
 }
 
 void declare_steps(SequenceKeys& keys) {
   const auto timeout = required("timeout_s", &Step::timeout_s, short_s, "time limit for passing the step");
   const auto retries = optional("retries", &Step::retries, {0, 10}, "number of repetitions of a failed step");
-  const auto on_fail =
-      required("on_fail", &Step::on_fail,
-               names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on}),
-               "[reaction](#when-a-step-fails) if the last attempt fails");
+  const auto on_fail = required("on_fail", &Step::on_fail, on_fail_names,
+                                "[reaction](#when-a-step-fails) if the last attempt fails");
   keys.tolerance = {timeout, retries, on_fail};
   keys.failing_contact = {retries, on_fail};
   const std::string settling = "waiting time after the ramp";
@@ -100,11 +90,9 @@ void declare_steps(SequenceKeys& keys) {
       optional("squeeze_kpa", &Squeeze::by_kpa, squeeze_kpa, "gripping pressure after contact", "none"),
       optional("squeeze_speed_kpa_per_s", &Squeeze::speed_kpa_per_s, speed,
                "rate at which the gripping pressure rises; required with `squeeze_kpa`", "none")};
-  keys.verify = {
-      required("by", &Verify::by, names({VerifyBy::detection, VerifyBy::position, VerifyBy::pressure}),
-               "evidence of a part"),
-      required("window_s", &Verify::window_s, window_s,
-               "time for which the evidence must be present without interruption")};
+  keys.verify = {required("by", &Verify::by, verify_by_names, "evidence of a part"),
+                 required("window_s", &Verify::window_s, window_s,
+                          "time for which the evidence must be present without interruption")};
   keys.verify_position = {
       optional("displacement_min_mm", &Verify::displacement_min_mm, mm, "lowest displacement with a part"),
       optional("displacement_max_mm", &Verify::displacement_max_mm, mm, "highest displacement with a part")};
@@ -124,9 +112,8 @@ void declare_profiles(SequenceKeys& keys) {
                 required("amplitude_mm", &Sine::amplitude_mm, {0.001, 100}, "amplitude"),
                 required("frequency_hz", &Sine::frequency_hz, {0.001, 50}, "frequency"),
                 required("cycles", &Sine::cycles, cycles, "number of periods")};
-  std::vector<std::string> signals;
-  for (const model::SignalName signal : model::all_signals()) signals.emplace_back(name_of(signal));
-  keys.signal = {optional("signal", &Profile::signal, signals, "test signal, in place of `points`")};
+  keys.signal = {
+      optional("signal", &Profile::signal, model::signal_names, "test signal, in place of `points`")};
   keys.scale = {
       optional("scale", &Profile::scale, {0.01, 20}, "only with `signal`: factor of the pressures")};
   keys.points = {{"points", "list", "", "points from time 0; the pressure between two points is linear"}};
