@@ -223,10 +223,8 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
     fail(client, request.id, error_json("busy", "the sequence of an earlier start is still being loaded"));
     return;
   }
-  if (const Json refusal = refusal_of_id(request.start_id); !refusal.is_null()) {
-    fail(client, request.id, refusal);
-    return;
-  }
+  if (const Json refusal = refusal_of_id(request.start_id); !refusal.is_null())
+    return fail(client, request.id, refusal);
   const std::stop_source stop;
   std::packaged_task<SequenceLoader::Result()> load(
       [loader = loader_, name = request.sequence, text = request.sequence_text,
@@ -279,9 +277,7 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
     return;
   }
   const auto number = sources_.service.submit_stop_of(*start, clients_[client].name);
-  wait_for(
-      number,
-      {.client = client, .id = request.id, .give_up = now + longest_answer, .remarks = {}, .checked = {}});
+  wait_for(number, {.client = client, .id = request.id, .give_up = now + longest_answer});
 }
 
 /// Lists the sequences of the directory. A separate thread reads their files, so that a vent request never
@@ -333,16 +329,15 @@ void SocketApi::loaded(const Planned& planned, SequenceLoader::Result sequence, 
     fail(planned.client, planned.id, error);
     return;
   }
-  const auto number =
-      ask(planned.client, planned.id, planned.dry_run ? Kind::check : Kind::start, std::move(*sequence), now);
-  if (number && !planned.dry_run)
-    starts_.add({.request = *number, .id = planned.start_id, .client = planned.client},
-                sources_.service.sequence_request());
+  const Kind kind = planned.dry_run ? Kind::check : Kind::start;
+  const auto number = ask(planned.client, planned.id, kind, std::move(*sequence), now);
+  const KnownStart start{.request = number.value_or(0), .id = planned.start_id, .client = planned.client};
+  if (number && !planned.dry_run) starts_.add(start, sources_.service.sequence_request());
 }
 
 std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
                                             std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
-  Asked asked{.client = client, .id = id, .give_up = now + longest_answer, .remarks = {}, .checked = {}};
+  Asked asked{.client = client, .id = id, .give_up = now + longest_answer};
   if (sequence) asked.remarks = sequence->remarks;
   if (kind == Kind::check) asked.checked = sequence;
   const auto number = sources_.service.submit(kind, std::move(sequence), clients_[client].name);

@@ -59,8 +59,8 @@ class SocketApi {
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     Nanoseconds give_up = 0;
-    document::Problems remarks;                     ///< warnings about the sequence of the request
-    std::shared_ptr<const LoadedSequence> checked;  ///< for a dry run: the sequence that was checked
+    document::Problems remarks{};                     ///< warnings about the sequence of the request
+    std::shared_ptr<const LoadedSequence> checked{};  ///< for a dry run: the sequence that was checked
   };
   struct Watch {
     std::optional<std::uint64_t> id;
