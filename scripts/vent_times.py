@@ -23,15 +23,14 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 import test_hearing  # noqa: E402
 
 ATTACKS = (
-    ("test_behind_a_crowd_of_silent_connections", "1,000 silent connections"),
-    ("test_beside_floods_of_acknowledgements", "four clients that send `acknowledge` as fast as they can"),
-    ("test_beside_pipelines_of_events", "many `events` requests that are sent without waiting for replies; the replies are read, or are not read"),
-    ("test_beside_clients_that_stand_still", "sixteen client processes under SIGSTOP: in the middle of a line, with answers "
-     "unread, with events unread, `softgrip watch`"),
-    ("test_on_a_full_disk", "a disk that becomes full during a recording, and that is still full when the next recording begins"),
-    ("test_without_a_descriptor_left", "no free file descriptor, and twenty connections"),
-    ("test_a_pipe_among_the_sequences", "a start request for a sequence file that is a pipe"),
-    ("test_a_disk_that_does_not_answer", "a start request for a sequence file that cannot be opened"),
+    ("test_a_vent_takes_less_than_0_5_s_with_1000_silent_connections", "1,000 silent connections"),
+    ("test_a_vent_takes_less_than_0_5_s_during_floods_of_acknowledgements", "four clients that send `acknowledge` as fast as they can"),
+    ("test_a_vent_takes_less_than_0_5_s_during_pipelined_event_requests", "a client that sends many `events` requests without waiting for the replies, and that reads or does not read the replies"),
+    ("test_a_vent_takes_less_than_0_5_s_with_stopped_clients", "sixteen client processes that are stopped by SIGSTOP: in the middle of a line, with unread replies, with unread events, or in `softgrip watch`"),
+    ("test_a_vent_takes_less_than_0_5_s_on_a_full_disk", "a disk that becomes full during a recording, and that remains full when the next recording begins"),
+    ("test_a_vent_takes_less_than_0_5_s_without_free_file_descriptors", "no free file descriptor, and twenty connections"),
+    ("test_a_vent_takes_less_than_0_5_s_with_a_pipe_among_the_sequences", "a start request for a sequence file that is a pipe"),
+    ("test_a_vent_takes_less_than_0_5_s_while_a_disk_does_not_respond", "a start request for a sequence file that cannot be opened"),
 )
 
 
@@ -52,7 +51,7 @@ def repeated(name, times):
 
 
 def table(times, only):
-    lines = ["| attack or condition | vents | longest time | median time | failed runs |", "|---|---|---|---|---|"]
+    lines = ["| attack or condition | number of vents | longest time | median time | failed runs |", "|---|---|---|---|---|"]
     worst = 0.0
     for name, words in ATTACKS:
         if only and only not in name:
@@ -63,7 +62,7 @@ def table(times, only):
         worst = max(worst, *waited)
         lines.append(f"| {words} | {len(waited)} | {max(waited) * 1000:.0f} ms | {statistics.median(waited) * 1000:.0f} ms | {wrong} |")
         print(lines[-1], flush=True)
-    return "\n".join(lines) + f"\n\nThe longest time of all vents: **{worst * 1000:.0f} ms**.\n"
+    return "\n".join(lines) + f"\n\nThe longest time of all vents is **{worst * 1000:.0f} ms**.\n"
 
 
 def main():

@@ -47,7 +47,7 @@ Nanoseconds monotonic() {
   return time.tv_sec * ns_per_s + time.tv_nsec;
 }
 
-TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
+TEST(MonotonicClock, CountsTheTimeWhileTheMachineIsSuspended) {
   const int code = after_a_day_asleep([] {
     const MonotonicClock clock;
     constexpr Nanoseconds day = 86'400 * ns_per_s;
@@ -64,7 +64,7 @@ TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
   EXPECT_EQ(code, 0);
 }
 
-TEST(MonotonicClock, OfAMachineThatNeverSleptIsTheKernelsOtherOne) {
+TEST(MonotonicClock, EqualsKernelMonotonicTimePlusSuspendTime) {
   const Nanoseconds slept = time_asleep();
   const Nanoseconds before = monotonic();
   const Nanoseconds now = MonotonicClock().now();
@@ -72,7 +72,7 @@ TEST(MonotonicClock, OfAMachineThatNeverSleptIsTheKernelsOtherOne) {
   EXPECT_LE(now, monotonic() + slept + ns_per_s / 1000);
 }
 
-TEST(WallClock, TextsAreUtcAndSortAsTheirTimes) {
+TEST(WallClock, UtcTextsSortInTimeOrder) {
   constexpr Nanoseconds moment = 1'763'610'372'045'678'901;
   EXPECT_EQ(utc_text(moment), "2025-11-20T03:46:12Z");
   EXPECT_EQ(utc_text(moment, 3), "2025-11-20T03:46:12.045Z");
@@ -80,7 +80,7 @@ TEST(WallClock, TextsAreUtcAndSortAsTheirTimes) {
   EXPECT_LT(utc_text(moment, 3), utc_text(moment + ns_per_s / 500, 3));
 }
 
-TEST(WallClock, AMomentOfTheOtherClockIsFoundOnTheWall) {
+TEST(WallClock, ConvertsBootTimeToWallTime) {
   timespec now{};
   clock_gettime(CLOCK_BOOTTIME, &now);
   const Nanoseconds moment = now.tv_sec * ns_per_s + now.tv_nsec;

@@ -35,7 +35,7 @@ class ComputerDeviceTest : public testing::Test {
   const fs::path bus_ = sys_ / "bus/iio/devices";
 };
 
-TEST_F(ComputerDeviceTest, FitsItsNodeItsAddressAndThePathsThatLeadToIt) {
+TEST_F(ComputerDeviceTest, IsFoundByNodeAddressAndPath) {
   add("iio:device0", "platform/i2c-1/1-0060");
   add("iio:device1", "platform/i2c-1/1-0061");
   EXPECT_EQ(node_of("iio:device1"), "iio:device1");
@@ -48,7 +48,7 @@ TEST_F(ComputerDeviceTest, FitsItsNodeItsAddressAndThePathsThatLeadToIt) {
   EXPECT_EQ(node_of((sys_ / "devices/platform/i2c-1/1-00").string()).substr(0, 12), "no converter");
 }
 
-TEST_F(ComputerDeviceTest, AWordOfTwoDevicesIsRefusedWithBothAndWhatTellsThemApart) {
+TEST_F(ComputerDeviceTest, AnAmbiguousNameIsRefusedWithBothDevices) {
   add("iio:device0", "platform/i2c-1/1-0060");
   add("iio:device1", "platform/i2c-1/1-0061");
   add("iio:device2", "platform/i2c-2/2-0048");
@@ -65,7 +65,7 @@ TEST_F(ComputerDeviceTest, AWordOfTwoDevicesIsRefusedWithBothAndWhatTellsThemApa
       << "a path that matches two devices is ambiguous";
 }
 
-TEST_F(ComputerDeviceTest, AWordOfOneKindThatIsAnotherKindElsewhereFitsTwo) {
+TEST_F(ComputerDeviceTest, ALabelEqualToANodeNameIsAmbiguous) {
   add("iio:device0", "a/1-0060");
   add("iio:device1", "a/1-0061");
   std::vector<ComputerDevice> devices = all();
@@ -74,7 +74,7 @@ TEST_F(ComputerDeviceTest, AWordOfOneKindThatIsAnotherKindElsewhereFitsTwo) {
   EXPECT_TRUE(only_device(devices, "1-0061", "converter"));
 }
 
-TEST_F(ComputerDeviceTest, TheSerialNumberIsThatOfTheUsbDeviceAndNotOfItsHub) {
+TEST_F(ComputerDeviceTest, TheSerialNumberBelongsToTheUsbDeviceNotTheHub) {
   add("iio:device0", "usb1/1-1/1-1.2/1-1.2:1.0/i2c-7/7-0060");
   add("iio:device1", "usb1/1-1/1-1.3/1-1.3:1.0/i2c-8/8-0060");
   for (const char* usb : {"usb1", "usb1/1-1", "usb1/1-1/1-1.2", "usb1/1-1/1-1.3"})
@@ -85,7 +85,7 @@ TEST_F(ComputerDeviceTest, TheSerialNumberIsThatOfTheUsbDeviceAndNotOfItsHub) {
   EXPECT_EQ(node_of("0000:00:14.0"), "no converter of this computer is called `0000:00:14.0`");
 }
 
-TEST_F(ComputerDeviceTest, WithoutABusThereIsNoAddress) {
+TEST_F(ComputerDeviceTest, WithoutABusDevicesAreNamedByNodeOnly) {
   fs::create_directories(bus_ / "iio:device0");
   fs::create_directories(bus_ / "iio:device1");
   const std::vector<ComputerDevice> devices = all();
@@ -98,7 +98,7 @@ TEST_F(ComputerDeviceTest, WithoutABusThereIsNoAddress) {
   EXPECT_EQ(only_device({}, "x", "converter").error().hint, "no converter is there");
 }
 
-TEST(FirstLine, EndsBeforeTheBlanksAtItsEnd) {
+TEST(FirstLine, OmitsTrailingBlanksAndLaterLines) {
   const ScratchFolder scratch;
   const fs::path file = fs::path(scratch.path()) / "label";
   std::ofstream(file) << "left valve \r\nmore";

@@ -24,18 +24,18 @@ int end_of_a_program_that_prints_to(const char* path, ExitCode code) {
   return static_cast<int>(with_output_checked(code, "test"));
 }
 
-TEST(StandardOutputDeathTest, AResultThatArrivedIsDone) {
+TEST(StandardOutputDeathTest, ASuccessfulWriteKeepsTheExitCodeDone) {
   EXPECT_EXIT(::_exit(end_of_a_program_that_prints_to("/dev/null", ExitCode::done)),
               testing::ExitedWithCode(0), "");
 }
 
-TEST(StandardOutputDeathTest, AResultThatDidNotArriveIsAnIoError) {
+TEST(StandardOutputDeathTest, AFailedWriteGivesTheExitCodeIoError) {
   EXPECT_EXIT(::_exit(end_of_a_program_that_prints_to("/dev/full", ExitCode::done)),
               testing::ExitedWithCode(4),
               "test: cannot write to the standard output: No space left on device");
 }
 
-TEST(StandardOutputDeathTest, AnotherFailureMattersMore) {
+TEST(StandardOutputDeathTest, AFailedWriteKeepsAnEarlierFailureCode) {
   EXPECT_EXIT(::_exit(end_of_a_program_that_prints_to("/dev/full", ExitCode::not_acceptable)),
               testing::ExitedWithCode(6), "standard output");
 }
@@ -52,7 +52,7 @@ int status_of(const std::function<void()>& body) {
   return status;
 }
 
-TEST(EndingSignal, TheFirstOneIsKept) {
+TEST(EndingSignal, TheFirstNotedSignalIsKept) {
   const int status = status_of([] {
     if (ending_signal() != 0) ::_exit(1);
     note_ending_signal(SIGHUP);
@@ -62,7 +62,7 @@ TEST(EndingSignal, TheFirstOneIsKept) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
-TEST(EndingSignal, EndsTheProcessEvenWhereItIsBlockedAndIgnored) {
+TEST(EndingSignal, EndsTheProcessDespiteBlockedAndIgnoredSignals) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGRTMIN}) {
     const int status = status_of([signal] {
       sigset_t all;
@@ -75,13 +75,13 @@ TEST(EndingSignal, EndsTheProcessEvenWhereItIsBlockedAndIgnored) {
   }
 }
 
-TEST(EndingSignal, HasAName) {
+TEST(EndingSignal, ReturnsTheNameOfASignal) {
   EXPECT_EQ(name_of_signal(SIGINT), "SIGINT");
   EXPECT_EQ(name_of_signal(SIGHUP), "SIGHUP");
   EXPECT_EQ(name_of_signal(SIGRTMIN), "signal " + std::to_string(SIGRTMIN));
 }
 
-TEST(EndingSignal, ASignalThatDoesNotEndAProcessIsAnExitCode) {
+TEST(EndingSignal, ANonFatalSignalGivesTheExitCode128PlusSignal) {
   const int status = status_of([] { end_by_signal(SIGURG); });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGURG) << status;
 }

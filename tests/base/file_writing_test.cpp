@@ -33,7 +33,7 @@ class FileWritingTest : public testing::Test {
   std::string path_ = (folder_ / "rig.yaml").string();
 };
 
-TEST_F(FileWritingTest, AFileThatIsThereIsNotCreated) {
+TEST_F(FileWritingTest, CreateRefusesAnExistingFile) {
   const auto again = create_file(path_, "new");
   ASSERT_FALSE(again);
   EXPECT_NE(again.error().find("File exists"), std::string::npos) << again.error();
@@ -50,7 +50,7 @@ TEST_F(FileWritingTest, AReplacedFileKeepsItsPermissions) {
   EXPECT_EQ(count(), 1U) << "no temporary file remains in the folder";
 }
 
-TEST_F(FileWritingTest, ALinkStaysALink) {
+TEST_F(FileWritingTest, ReplacingThroughALinkKeepsTheLink) {
   const fs::path link = folder_ / "link.yaml";
   fs::create_symlink("rig.yaml", link);
   ASSERT_TRUE(replace_file(link.string(), "new"));
@@ -58,12 +58,12 @@ TEST_F(FileWritingTest, ALinkStaysALink) {
   EXPECT_EQ(text(path_), "new");
 }
 
-TEST_F(FileWritingTest, WhatIsNotThereIsNotReplaced) {
+TEST_F(FileWritingTest, ReplaceRefusesAMissingFile) {
   EXPECT_FALSE(replace_file((folder_ / "absent.yaml").string(), "new"));
   EXPECT_EQ(count(), 1U);
 }
 
-TEST_F(FileWritingTest, AResultReplacesAFileAndKeepsItsPermissions) {
+TEST_F(FileWritingTest, WriteFileReplacesAFileAndKeepsThePermissions) {
   ASSERT_EQ(::chmod(path_.c_str(), 0640), 0);
   ASSERT_TRUE(write_file(path_, "new"));
   ASSERT_TRUE(write_file((folder_ / "deep/er/new.csv").string(), "first", Sync::none));
@@ -75,7 +75,7 @@ TEST_F(FileWritingTest, AResultReplacesAFileAndKeepsItsPermissions) {
   EXPECT_EQ(count(), 2U) << "no temporary file remains in the folder";
 }
 
-TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
+TEST_F(FileWritingTest, ANewFileHasThePermissionsOfTheUmask) {
   const mode_t before = ::umask(027);
   const auto written = write_file((folder_ / "new.csv").string(), "x");
   ::umask(before);
@@ -87,7 +87,7 @@ TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
 
 /// In a shared folder, another user can create a symbolic link with the name of the result file. The link can
 /// point to a file of the user who runs the test.
-TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
+TEST_F(FileWritingTest, WriteFileReplacesALinkAndDoesNotFollowTheLink) {
   const fs::path link = folder_ / "result.csv";
   fs::create_symlink("rig.yaml", link);
   ASSERT_TRUE(write_file(link.string(), "new"));
@@ -99,7 +99,7 @@ TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
   EXPECT_FALSE(fs::exists(folder_ / "absent"));
 }
 
-TEST_F(FileWritingTest, APrivateFileIsForItsOwnerAloneAndReplacesALink) {
+TEST_F(FileWritingTest, APrivateFileHasMode0600AndReplacesALink) {
   fs::create_symlink("rig.yaml", folder_ / "kept.json");
   const Descriptor folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   ASSERT_TRUE(write_private_file(folder, "kept.json", "new"));
@@ -113,7 +113,7 @@ TEST_F(FileWritingTest, APrivateFileIsForItsOwnerAloneAndReplacesALink) {
   EXPECT_FALSE(write_private_file(Descriptor(), "kept.json", "newer"));
 }
 
-TEST_F(FileWritingTest, AFolderInThePlaceOfTheFileIsAnError) {
+TEST_F(FileWritingTest, AFolderWithTheNameOfTheFileIsAnError) {
   fs::create_directory(folder_ / "taken");
   const auto written = write_file((folder_ / "taken").string(), "new");
   ASSERT_FALSE(written);

@@ -37,7 +37,7 @@ TEST_F(FilesTest, AFileUpToTheBoundIsRead) {
   EXPECT_FALSE(read_file(at("absent"), 5));
 }
 
-TEST_F(FilesTest, AFileThatGivesNoSizeIsReadToItsEndAndWithinTheBound) {
+TEST_F(FilesTest, AFileOfUnknownSizeIsReadUpToTheSizeLimit) {
   EXPECT_GT(read_file("/proc/self/status", 100'000)->size(), 100U);
   EXPECT_FALSE(read_file("/proc/self/status", 100));
 }
@@ -76,7 +76,7 @@ TEST_F(FilesTest, AFileThatAnotherProcessHasLeasedIsRefusedWithoutWaiting) {
   EXPECT_TRUE(open_regular(path));
 }
 
-TEST_F(FilesTest, InAFolderNoLinkIsFollowed) {
+TEST_F(FilesTest, OpenRegularInRefusesASymbolicLink) {
   (void)file("file", "text");
   fs::create_symlink("file", at("link"));
   const Descriptor folder(::open(scratch_.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -89,7 +89,7 @@ TEST_F(FilesTest, InAFolderNoLinkIsFollowed) {
   EXPECT_TRUE(open_regular(at("link")));
 }
 
-TEST(ScratchFolder, IsGoneWithWhatIsInIt) {
+TEST(ScratchFolder, TheDestructorRemovesTheFolderAndAllFiles) {
   std::string path;
   {
     const ScratchFolder one, other;

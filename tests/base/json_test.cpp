@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(JsonMember, ReadsMembersOfTheirType) {
+TEST(JsonMember, ReadsMembersOfTheRequestedType) {
   const Json object = Json::parse(R"({"a": 1.5, "b": true, "c": "x", "f": [1]})");
   EXPECT_EQ(json_number(object, "a"), 1.5);
   EXPECT_TRUE(json_flag(object, "b"));
@@ -20,7 +20,7 @@ TEST(JsonMember, ReadsMembersOfTheirType) {
   EXPECT_EQ(json_member(object, "a"), 1.5);
 }
 
-TEST(JsonMember, WhatIsMissingOrOfAnotherTypeIsNotKnown) {
+TEST(JsonMember, MissingOrMistypedMembersGiveTheDefault) {
   const Json object = Json::parse(R"({"a": 1.5, "b": true, "c": "x", "d": null})");
   for (const char* key : {"b", "c", "d", "e"}) {
     EXPECT_NE(json_number(object, key), json_number(object, key)) << key;
@@ -42,20 +42,20 @@ std::string nested(std::size_t levels) {
   return std::string(levels, '[') + std::string(levels, ']');
 }
 
-TEST(ParseJson, KeepsOrdinaryTexts) {
+TEST(ParseJson, PreservesKeyOrderAndThirtyLevels) {
   const std::string text = R"({"b":[1,{"a":null}],"a":"x"})";
   EXPECT_EQ(parse_json<Json>(text).dump(), text);
   EXPECT_EQ(parse_json<Json>(nested(30)).dump(), nested(30));
 }
 
-TEST(ParseJson, WhatIsNotJsonIsDiscarded) {
+TEST(ParseJson, InvalidJsonIsDiscarded) {
   for (const char* text : {"", "{", "[1,]", "{\"a\":1}}", "\xff"})
     EXPECT_TRUE(parse_json<Json>(text).is_discarded()) << text;
 }
 
 /// The reader must limit the number of nested levels. Otherwise, copying or printing deeply nested JSON would
 /// overflow the stack.
-TEST(ParseJson, ManyLevelsAreCutOff) {
+TEST(ParseJson, NestingAboveTheLimitIsCutOff) {
   const Json json = parse_json<Json>(nested(1'000'000));
   const Json copy = json;  // NOLINT(performance-unnecessary-copy-initialization): the copy is the test
   EXPECT_LE(copy.dump().size(), 2U * deepest_json);

@@ -7,7 +7,7 @@
 namespace softgrip::numbers_test {
 namespace {
 
-TEST(Numbers, ForPeopleHaveNoZerosThatSayNothing) {
+TEST(Numbers, FormattedNumbersOmitUselessZerosAndMinusZero) {
   EXPECT_EQ(significant(58), "58");
   EXPECT_EQ(significant(0.07386, 3), "0.0739");
   EXPECT_EQ(significant(-0.0), "0");
@@ -17,7 +17,7 @@ TEST(Numbers, ForPeopleHaveNoZerosThatSayNothing) {
   EXPECT_EQ(fixed(-0.001, 2), "0.00");
 }
 
-TEST(Numbers, ThatAreNoneAreADashForPeople) {
+TEST(Numbers, NaNAndInfinityAreFormattedAsADash) {
   for (const double none :
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(significant(none), "-");
@@ -25,7 +25,7 @@ TEST(Numbers, ThatAreNoneAreADashForPeople) {
   }
 }
 
-TEST(Numbers, InMessagesAvoidAnExponentWhereThatIsShort) {
+TEST(Numbers, WrittenAvoidsAnExponentForShortNumbers) {
   EXPECT_EQ(shortest(100000), "1e+05");
   EXPECT_EQ(written(100000), "100000");
   EXPECT_EQ(written(0.0001), "0.0001");
@@ -33,7 +33,7 @@ TEST(Numbers, InMessagesAvoidAnExponentWhereThatIsShort) {
   EXPECT_EQ(written(std::numeric_limits<double>::infinity()), "inf");
 }
 
-TEST(Numbers, ComeBackAsTheyWent) {
+TEST(Numbers, FormattedNumbersParseToTheSameValue) {
   for (const double value : {0.1 + 0.2, 1e-300, -1.0 / 3, 5e15}) {
     EXPECT_EQ(to_number(shortest(value)), value);
     EXPECT_EQ(to_number(written(value)), value);

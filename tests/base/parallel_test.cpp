@@ -32,7 +32,7 @@ class Crowd {
   std::atomic<int> inside_{0}, most_{0};
 };
 
-TEST(ParallelFor, DoesEveryItemOnce) {
+TEST(ParallelFor, ProcessesEveryItemOnce) {
   for (const unsigned threads : {0U, 1U, 2U, 7U}) {
     std::vector<std::atomic<int>> done(100);
     parallel_for(done.size(), threads, [&](std::size_t i) { ++done[i]; });
@@ -40,13 +40,13 @@ TEST(ParallelFor, DoesEveryItemOnce) {
   }
 }
 
-TEST(ParallelFor, ComputesOnNoMoreThreadsThanItMay) {
+TEST(ParallelFor, UsesNoMoreThanTheGivenNumberOfThreads) {
   Crowd crowd;
   parallel_for(20, 3, [&](std::size_t) { crowd.visit(); });
   EXPECT_LE(crowd.most(), 3);
 }
 
-TEST(ParallelFor, BeginsNoItemAfterAStop) {
+TEST(ParallelFor, StopsWithinAFewItemsAfterAStopRequest) {
   std::stop_source stop;
   const ThreadBudget budget(2, stop.get_token());
   std::atomic<int> begun{0};
@@ -66,7 +66,7 @@ TEST(ParallelFor, AThreadWithoutABudgetIsNeverCancelled) {
   EXPECT_NO_THROW(end_if_cancelled());
 }
 
-TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {
+TEST(ParallelFor, NestedLoopsShareTheThreadsOfTheOuterLoop) {
   Crowd crowd;
   std::atomic<int> leaves{0};
   {
@@ -99,7 +99,7 @@ bool side_by_side() {
   return met;
 }
 
-TEST(ParallelFor, ALoopWithinTheLastItemTakesTheThreadThatIsIdle) {
+TEST(ParallelFor, ANestedLoopInTheLastItemUsesTheIdleThread) {
   for (const bool caller_works : {true, false}) {
     const ThreadBudget budget(2);
     const std::thread::id caller = std::this_thread::get_id();
@@ -117,13 +117,13 @@ TEST(ParallelFor, ALoopWithinTheLastItemTakesTheThreadThatIsIdle) {
   }
 }
 
-TEST(ParallelForIdle, WithoutABudgetIsTheCallingThreadAlone) {
+TEST(ParallelForIdle, UsesOnlyTheCallingThreadWithoutABudget) {
   std::set<std::thread::id> threads;
   parallel_for_idle(50, [&](std::size_t) { threads.insert(std::this_thread::get_id()); });
   EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
 }
 
-TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
+TEST(ParallelFor, RethrowsAnExceptionAfterAllItemsAreDone) {
   const ThreadBudget budget(2);
   for (int round = 0; round < 50; ++round) {
     std::atomic<int> done{0};
@@ -141,7 +141,7 @@ TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
   ThreadBudget::current()->give_back(1);
 }
 
-TEST(ThreadBudget, EndsWithItsScopeAndDoesNotGrowWithinIt) {
+TEST(ThreadBudget, EndsWithTheScopeAndANestedBudgetHasNoEffect) {
   EXPECT_EQ(ThreadBudget::current(), nullptr);
   {
     const ThreadBudget outer(4);

@@ -9,19 +9,19 @@ namespace {
 
 constexpr Nanoseconds period = 1'000'000;
 
-TEST(PeriodicSchedule, MovesOnByOnePeriodWhenInTime) {
+TEST(PeriodicSchedule, AdvancesByOnePeriodWhenOnTime) {
   PeriodicSchedule schedule(5, period);
   EXPECT_EQ(schedule.advance(700'000), 0U);
   EXPECT_EQ(schedule.due(), 5 + period);
 }
 
-TEST(PeriodicSchedule, ATickThatEndsExactlyWhenTheNextIsDueLosesNothing) {
+TEST(PeriodicSchedule, ATickThatEndsAtTheNextDeadlineSkipsNothing) {
   PeriodicSchedule schedule(0, period);
   EXPECT_EQ(schedule.advance(period), 0U);
   EXPECT_EQ(schedule.due(), period);
 }
 
-TEST(PeriodicSchedule, SkipsToTheNextPointOfTheGridAfterAnOverrun) {
+TEST(PeriodicSchedule, SkipsToTheNextDeadlineAfterAnOverrun) {
   PeriodicSchedule schedule(0, period);
   EXPECT_EQ(schedule.advance(period + 1), 1U);
   EXPECT_EQ(schedule.due(), 2 * period);
@@ -29,7 +29,7 @@ TEST(PeriodicSchedule, SkipsToTheNextPointOfTheGridAfterAnOverrun) {
   EXPECT_EQ(schedule.due(), 11 * period);
 }
 
-TEST(PeriodicSchedule, NeverLosesItsPhaseNorTicksInThePast) {
+TEST(PeriodicSchedule, KeepsThePhaseAndSchedulesNoPastDeadline) {
   const unsigned seed = 11;
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -52,7 +52,7 @@ TEST(PeriodicSchedule, NeverLosesItsPhaseNorTicksInThePast) {
   EXPECT_EQ(static_cast<Nanoseconds>(counted) * period, schedule.due() - start);
 }
 
-TEST(PeriodicSchedule, SleepsToATimeNotForADuration) {
+TEST(PeriodicSchedule, SleepsUntilAnAbsoluteTime) {
   timespec time{};
   clock_gettime(CLOCK_BOOTTIME, &time);
   const Nanoseconds begin = time.tv_sec * ns_per_s + time.tv_nsec;

@@ -10,7 +10,7 @@
 namespace softgrip::statistics_test {
 namespace {
 
-TEST(Median, IsTheUpperOneOfTwoInTheMiddle) {
+TEST(Median, IsTheUpperOfTwoMiddleValues) {
   std::vector<double> odd{5, 1, 9}, even{4, 1, 3, 2}, none;
   EXPECT_EQ(median_of(std::span(odd)), 5);
   EXPECT_EQ(median_of(std::span(even)), 3);
@@ -19,7 +19,7 @@ TEST(Median, IsTheUpperOneOfTwoInTheMiddle) {
   EXPECT_EQ(median_of(std::span(part).first(3)), 8);
 }
 
-TEST(PairSums, FindTheLineAndPassOverWhatIsNoNumber) {
+TEST(PairSums, ComputeTheSlopeAndSkipNaN) {
   PairSums sums, still;
   for (const double x : {1.0, 2.0, 4.0}) {
     sums.add(x, 3 - 2 * x);
@@ -34,7 +34,7 @@ TEST(PairSums, FindTheLineAndPassOverWhatIsNoNumber) {
   EXPECT_EQ(still.correlation(), 0);
 }
 
-TEST(ThirdDifferenceNoise, IsThatOfTheSamplesAndNotOfTheCourse) {
+TEST(ThirdDifferenceNoise, EstimatesTheNoiseWithoutTheTrend) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal(0, 0.2);
   std::vector<double> course, noisy;

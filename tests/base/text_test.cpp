@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-TEST(Enumerated, PutsItsWordBeforeTheLastOnly) {
+TEST(Enumerated, PutsTheConjunctionBeforeTheLastItemOnly) {
   EXPECT_EQ(enumerated(Words{}, " and "), "");
   EXPECT_EQ(enumerated(Words{"a"}, " and "), "a");
   EXPECT_EQ(enumerated(Words{"a", "b"}, " and "), "a and b");
@@ -20,7 +20,7 @@ TEST(Enumerated, PutsItsWordBeforeTheLastOnly) {
   EXPECT_EQ(enumerated(Words{"", "b"}, " and "), " and b") << "an empty item counts as an item";
 }
 
-TEST(Enumerated, TakesWhatMakesATextOfAnItemOrTheMemberThatHoldsIt) {
+TEST(Enumerated, AcceptsAFunctionOrAMemberForTheItemText) {
   struct Channel {
     std::string_view name;
   };
@@ -39,14 +39,14 @@ std::string words_of(const std::string& text) {
   return words;
 }
 
-TEST(ShellWord, IsQuotedOnlyWhereItMustBe) {
+TEST(ShellWord, IsQuotedOnlyIfNecessary) {
   EXPECT_EQ(shell_word("p=1.5"), "p=1.5");
   EXPECT_EQ(shell_word("a b"), "'a b'");
   EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
   EXPECT_EQ(shell_word(""), "''");
 }
 
-TEST(ShellWord, IsOneWordToTheShellWhateverStandsInIt) {
+TEST(ShellWord, TheShellReadsAnyTextAsOneWord) {
   const std::vector<std::string> texts{"logs/day 1.csv",
                                        "it's",
                                        "''",

@@ -25,7 +25,7 @@ class Answers(unittest.TestCase):
         found = judge_changes.judged_label(pair, names(named, alternatives), True)
         return found["named_correctly"], found["listed"], found["wrong_alone"]
 
-    def test_an_answer_to_a_label(self):
+    def test_a_diagnosis_is_judged_by_its_named_and_listed_causes(self):
         self.assertEqual(self.judged(["contact"]), (True, True, False))
         self.assertEqual(self.judged(["sensor_drift", "payload"]), (True, True, False))
         self.assertEqual(self.judged(["sensor_drift"], [["contact"]]), (False, True, False))
@@ -54,14 +54,14 @@ class Answers(unittest.TestCase):
 
 @unittest.skipUnless(SCIPY, "python3-scipy is not installed")
 class Spread(unittest.TestCase):
-    def test_one_healthy_run_has_no_spread(self):
+    def test_one_or_no_healthy_run_gives_no_bound(self):
         self.assertIsNone(judge_changes.healthy_bound([1.0]))
         self.assertIsNone(judge_changes.healthy_bound([]))
 
-    def test_equal_errors_have_no_spread(self):
+    def test_the_bound_of_equal_errors_is_that_error(self):
         self.assertAlmostEqual(judge_changes.healthy_bound([2.0, 2.0, 2.0]), 2.0)
 
-    def test_one_more_healthy_run_stays_below_with_95_percent(self):
+    def test_a_new_healthy_run_is_below_the_bound_in_95_percent_of_cases(self):
         draw = random.Random(1)
         for runs in (2, 3, 6):
             below = 0

@@ -108,14 +108,14 @@ class Command(ForeignCase):
             self.assertIn(text, page)
         self.assertIn("[3/3] changes data: a + b -> c ... changed: sensor_drift (listed)", printed)
 
-    def test_loops_are_diagnosed_and_judged_by_their_phase(self):
+    def test_a_control_loop_is_diagnosed_and_judged_for_stiction(self):
         code, printed = self.run_it("--only", "stiction", table=TABLE + "stiction: [{logs: a, sticks: true}]\n")
         self.assertEqual(code, 0, printed)
         self.assertEqual(self.calls(), ["identify a", "diagnose a"])
         self.assertEqual(self.results()["summary"]["stiction"]["sticking"]["stiction_named"], 0)
         self.assertIn("| a | sticks | cause_found | sensor_drift or backlash (1.25 mm) |", self.page.read_text())
 
-    def test_identification_is_compared_with_programs_that_know_nothing_of_softgrip(self):
+    def test_identification_is_compared_with_output_error_and_scipy_models(self):
         fits = "identification: [{log: a}, {log: a, test: c}]\n"
         code, printed = self.run_it("--only", "identification", table=TABLE + fits)
         self.assertEqual(code, 0, printed)
@@ -129,7 +129,7 @@ class Command(ForeignCase):
         self.assertEqual(self.results()["summary"]["identification"]["linear_better"], {"plain": 1, "auto": 1})
         self.assertIn("| yes | play operators |", self.page.read_text())
 
-    def test_a_method_that_fails_costs_its_own_cell(self):
+    def test_a_failed_method_does_not_affect_the_other_methods(self):
         self.put_plain("d.csv", line50="4.8,1,2")
         (self.folder / "refuse").write_text("d")
         table = TABLE.replace("{file: c.csv}", "{file: c.csv}, {file: d.csv}") + "identification: [{log: d}]\n"
@@ -139,7 +139,7 @@ class Command(ForeignCase):
         self.assertEqual((sorted(row["errors"]), sorted(row["methods"])), (["auto", "plain"], ["output_error", "scipy"]))
         self.assertIn("d.csv:40: too few samples", self.page.read_text())
 
-    def test_the_reference_is_shown_beside(self):
+    def test_the_page_shows_the_reference_results_in_a_separate_column(self):
         self.run_it("--only", "repeats")
         (self.folder / "reference.json").write_text((self.out / "results.json").read_text())
         self.answer({**DIAGNOSIS, "verdict": "unchanged", "causes": [], "alternatives": []})
@@ -148,7 +148,7 @@ class Command(ForeignCase):
         self.assertIn("| criterion | required | reference: softgrip 1.2.3 | reached |", self.page.read_text())
         self.assertIn("| at most 1 of 12 | 2 of 2 | 0 of 2 |", self.page.read_text())
 
-    def test_kept_calls_are_not_repeated(self):
+    def test_a_cached_call_is_repeated_only_if_a_log_has_changed(self):
         self.run_it("--only", "repeats")
         self.run_it("--only", "repeats")
         self.assertEqual(self.calls(), [])
@@ -156,7 +156,7 @@ class Command(ForeignCase):
         self.run_it("--only", "repeats")
         self.assertGreater(len(self.calls()), 0)
 
-    def test_a_failure_costs_its_own_case(self):
+    def test_a_refused_log_fails_only_the_cases_with_this_log(self):
         (self.folder / "refuse").write_text("a")
         self.put_plain("a.csv", line2="0.0,1,2")
         table = TABLE.replace("- {baseline: a, later: b,", "- {baseline: b, later: c,")
@@ -168,14 +168,14 @@ class Command(ForeignCase):
         self.assertIn("too few samples", self.page.read_text())
         self.assertEqual(self.results()["summary"]["repeats"]["runs"]["failed"], 1)
 
-    def test_a_mistake_in_the_table_costs_its_own_case(self):
+    def test_an_error_in_the_table_fails_only_the_affected_case(self):
         code, _ = self.run_it("--only", "repeats", table=TABLE.replace("later: b,", "later: d,"))
         self.assertEqual(code, 1)
         cases = self.results()["cases"]
         self.assertIn("foreign.yaml:7: later: no log is named 'd'", cases[0]["error"])
         self.assertNotIn("error", cases[1])
 
-    def test_an_answer_of_another_form_costs_its_own_case(self):
+    def test_a_diagnosis_without_required_keys_fails_the_case(self):
         self.answer({"verdict": "unchanged"})
         code, _ = self.run_it("--only", "repeats")
         self.assertEqual(code, 1)
@@ -185,7 +185,7 @@ class Command(ForeignCase):
         self.run_it("--cases", "data/a -> *", "--only", "repeats")
         self.assertEqual([case["case"] for case in self.results()["cases"]], ["a -> b"])
 
-    def test_a_call_that_cannot_run(self):
+    def test_a_missing_program_or_data_folder_exits_with_code_4(self):
         self.assertEqual(self.run_it("--softgrip", "none")[0], 4)
         self.data.joinpath("foreign.yaml").write_text(TABLE)
         with contextlib.redirect_stderr(io.StringIO()):

@@ -70,7 +70,7 @@ class OutputError(ForeignCase):
                              check=True, capture_output=True, text=True)
         return json.loads(run.stdout)
 
-    def test_a_system_of_its_order_is_predicted_down_to_the_noise(self):
+    def test_a_model_of_the_true_order_predicts_to_the_noise_level(self):
         for resonance in (False, True):
             with self.subTest(resonance=resonance):
                 found = self.fit(3, self.put_record("a.csv", 1, resonance))
@@ -78,16 +78,16 @@ class OutputError(ForeignCase):
                 self.assertLess(found["fitted_mm"], 1.2 * NOISE_MM)
                 self.assertLess(found["held_out_mm"], 1.5 * NOISE_MM)
 
-    def test_another_log_begins_in_an_unknown_state(self):
+    def test_the_initial_state_of_the_test_log_is_estimated(self):
         first = self.put_record("a.csv", 1, False, (5.0, -5.0, 0.0))
         found = self.fit(2, first, self.put_record("b.csv", 2, False, (-4.0, 6.0, 0.0)))
         self.assertLess(found["held_out_mm"], 3 * NOISE_MM)
 
-    def test_a_model_of_too_low_an_order_is_worse(self):
+    def test_a_model_of_too_low_order_has_a_larger_error(self):
         path = self.put_record("a.csv", 1, True)
         self.assertGreater(self.fit(1, path)["held_out_mm"], 5 * self.fit(3, path)["held_out_mm"])
 
-    def test_irregular_samples_and_missing_readings(self):
+    def test_irregular_samples_and_missing_readings_are_accepted(self):
         path = self.put_record("a.csv", 1, False)
         head, *rows = path.read_text().splitlines()
         kept = [row if k % 50 != 7 else row.rsplit(",", 1)[0] + "," for k, row in enumerate(rows) if k % 3 != 1]

@@ -30,7 +30,7 @@ class Inserted(ForeignCase):
     def readings_with(self, effect, readings):
         return insert_effects.inserted(log_of(readings), effect)["displacement"]
 
-    def test_each_effect_changes_the_readings_by_a_part_of_the_stroke(self):
+    def test_each_effect_changes_readings_by_4_to_60_percent_of_the_stroke(self):
         readings = list(5 + 10 * np.sin(np.linspace(0, 12, 400)) ** 2)
         for effect in insert_effects.EFFECTS:
             with self.subTest(effect):
@@ -39,24 +39,24 @@ class Inserted(ForeignCase):
                 self.assertLess(change.max(), 6)
         self.assertEqual(len(insert_effects.EFFECTS), 9)
 
-    def test_an_object_acts_beyond_its_position_only(self):
+    def test_a_contact_changes_only_readings_beyond_its_position(self):
         readings = np.linspace(2, 12, 101)
         changed = self.readings_with("contact", list(readings))
         np.testing.assert_allclose(changed[:60], readings[:60])
         self.assertAlmostEqual(changed[-1], 2 + 6 + 0.25 * 4)
 
-    def test_a_missing_reading_is_between_its_neighbours(self):
+    def test_a_missing_reading_is_interpolated_linearly(self):
         changed = self.readings_with("gain", [0.0, float("nan"), 2.0, 4.0])
         np.testing.assert_allclose(changed, [0, 0.85, 1.7, 3.4])
 
-    def test_the_pressure_is_delayed_with_the_displacement(self):
+    def test_a_delay_shifts_pressure_and_displacement_equally(self):
         log = log_of(list(np.arange(50.0)))
         log.columns["pressure"] = list(np.arange(50.0))
         changed = insert_effects.inserted(log, "delay")
         np.testing.assert_allclose(changed["pressure"], changed["displacement"])
         self.assertAlmostEqual(changed["pressure"][20], 17.5)
 
-    def test_the_table_is_a_set_with_the_most_baseline_runs(self):
+    def test_the_written_set_uses_the_repeat_with_the_most_baseline_runs(self):
         for name in "abc":
             self.put_plain(f"{name}.csv")
         (self.data / set_table.OWN_TABLE).write_text(TABLE)

@@ -23,7 +23,7 @@ def relaxed(pressures, share):
 
 @unittest.skipUnless(importlib.util.find_spec("scipy"), "python3-scipy is not installed")
 class Scipy(ForeignCase):
-    def test_it_finds_what_it_can_describe_and_foretells_the_rest(self):
+    def test_a_system_with_creep_is_fitted_and_its_held_out_part_predicted(self):
         pressures = [30 - 20 * math.cos(0.04 * i) - 10 * math.cos(0.1 * i) for i in range(SAMPLES)]
         rows = [f"{0.05 * i},{p},{'' if i % 50 == 7 else y}"
                 for i, (p, y) in enumerate(zip(pressures, relaxed(pressures, 0.5)))]

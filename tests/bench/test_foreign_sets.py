@@ -22,7 +22,7 @@ class Sets(ForeignCase):
         for word in words:
             self.assertIn(word, said)
 
-    def test_pairs_loops_and_fits(self):
+    def test_repeats_changes_loops_and_fits_are_read(self):
         found = self.read_set(
             "source: a laboratory\nlicence: MIT\n"
             "repeats: [{baseline: a, later: b, because: same day}]\n"
@@ -38,17 +38,17 @@ class Sets(ForeignCase):
         items = (*found.repeats, *found.changes, *found.loops, *found.fits)
         self.assertEqual([problem for item in items for problem in item.problems], [])
 
-    def test_every_log_is_identified_unless_the_table_lists_some(self):
+    def test_every_log_is_identified_without_the_key_identification(self):
         self.assertEqual([fit.log for fit in self.read_set("title: x\n").fits], ["a", "b", "c"])
         self.assertEqual(self.read_set("identification: []\n").fits, [])
 
-    def test_a_mistake_in_a_pair_has_its_file_and_line(self):
+    def test_an_error_in_a_pair_is_reported_with_file_and_line(self):
         found = self.read_set("repeats:\n- baseline: [a, d]\n  later: b\n- {baseline: a, later: a, becuase: x}\n")
         self.assert_says(found.repeats[:1], "table.yaml:4: baseline: no log is named 'd'", "'because' is missing")
         self.assert_says(found.repeats[1:], "table.yaml:6: later: 'a' belongs to its own baseline",
                          "table.yaml:6: 'becuase' is no key here: is it 'because'?")
 
-    def test_a_mistake_in_a_change_a_loop_and_a_fit(self):
+    def test_errors_in_a_change_a_loop_and_a_fit_are_reported(self):
         found = self.read_set("changes: [{baseline: a, later: b, because: x, causes: [backlsh]}]\n"
                               "stiction:\n- {logs: stic_*, sticks: 'yes'}\n"
                               "identification: [{log: a, order: 9}]\n")
@@ -57,13 +57,13 @@ class Sets(ForeignCase):
         self.assert_says(found.loops, "table.yaml:5: logs: no log fits 'stic_*'", "table.yaml:5: 'sticks' is true or false")
         self.assert_says(found.fits, "table.yaml:6: order: 9 is not 1, 2, 3 or 4")
 
-    def test_a_list_that_is_none(self):
+    def test_repeats_and_changes_must_be_lists_of_mappings(self):
         for text in ("repeats: a\n", "changes: [a]\n"):
             with self.assertRaises(Unusable) as caught:
                 self.read_set(text)
             self.assertIn("table.yaml:3:", str(caught.exception))
 
-    def test_the_tables_of_this_project(self):
+    def test_all_tables_of_this_project_are_valid(self):
         sets, problems = set_table.find_sets([BENCH / "foreign/data"], BENCH / "foreign/sets", self.folder)
         self.assertEqual((problems, sorted(s.name for s in sets)), ([], ["hydraulic", "piezo", "stiction"]))
         sets.append(set_table.read_set(BENCH / "foreign/sets/asu_softarm.yaml", self.data))
@@ -87,7 +87,7 @@ class Folders(ForeignCase):
         (self.data / folder).mkdir(exist_ok=True)
         (self.data / folder / name).write_text("time_s,pressure_command_kpa,displacement_mm,note\n0,1,2,x\n1,2,3,y\n")
 
-    def test_a_folder_without_a_table_is_identified_only(self):
+    def test_logs_in_a_folder_without_a_table_are_only_identified(self):
         self.put_log("new")
         (self.data / "new/other.csv").write_text("t,u\n0,1\n")
         (self.data / "notes").mkdir()
@@ -96,7 +96,7 @@ class Folders(ForeignCase):
         self.assertEqual(([fit.log for fit in sets["new"].fits], sets["new"].repeats), (["a"], []))
         self.assertEqual(sorted(sets["new"].logs["a"].columns), ["command", "displacement", "time"])
 
-    def test_a_table_in_the_folder_and_the_root_as_a_set(self):
+    def test_the_root_folder_and_a_folder_with_a_table_are_sets(self):
         self.put_log("own")
         (self.data / "own/foreign.yaml").write_text(
             "title: Mine\nlogs:\n"
@@ -105,7 +105,7 @@ class Folders(ForeignCase):
         sets, problems = self.find()
         self.assertEqual((problems, sets["own"].title, list(sets)), ([], "Mine", ["data", "own"]))
 
-    def test_an_unusable_table_costs_its_own_set(self):
+    def test_an_invalid_table_excludes_only_its_own_set(self):
         self.put_log("good")
         self.put_log("bad")
         (self.data / "bad/foreign.yaml").write_text("logs: [")

@@ -15,7 +15,7 @@ class Tables(ForeignCase):
         for word in words:
             self.assertIn(word, str(caught.exception))
 
-    def test_what_all_logs_share_is_said_once(self):
+    def test_keys_under_same_apply_to_every_log(self):
         logs = self.table("""\
             same: {time: t_s, command: u_kpa, displacement: y_mm, split: 0.6, begin: rest}
             logs:
@@ -26,13 +26,13 @@ class Tables(ForeignCase):
                          [("a", 0.6, "rest"), ("second", 0.4, "rest")])
         self.assertEqual([log.problems for log in logs], [[], []])
 
-    def test_a_pattern_stands_for_every_file(self):
+    def test_a_file_pattern_adds_one_log_for_each_matching_file(self):
         for name in ("x2.csv", "x1.csv", "y.csv"):
             self.put_plain(name)
         logs = self.table("logs: [{file: 'x*.csv', time: t_s, command: u_kpa, displacement: y_mm}]").logs
         self.assertEqual([log.name for log in logs], ["x1", "x2"])
 
-    def test_the_table_of_the_how_to(self):
+    def test_the_example_table_of_the_how_to_guide_is_valid(self):
         page = (BENCH.parent / "docs/how-to/measure.md").read_text()
         logs = self.table(page.split("```yaml\n")[1].split("```")[0]).logs
         self.assertEqual([log.name for log in logs], ["day1/*.csv", "second day"])
@@ -40,7 +40,7 @@ class Tables(ForeignCase):
         for key in (*log_table.KEYS, *log_table.COLUMN_KEYS):
             self.assertIn(f"`{key}`", page)
 
-    def test_mistakes_have_their_line_and_say_what_was_meant(self):
+    def test_errors_are_reported_with_line_and_suggestion(self):
         said = self.problems("""\
             logs:
             - file: a.csv
@@ -60,11 +60,11 @@ class Tables(ForeignCase):
                      "table.yaml:8: separator", "table.yaml:9: from_s: 'soon'", "table.yaml:2: 'time' is missing"):
             self.assertIn(line, said)
 
-    def test_a_log_that_nothing_drives(self):
+    def test_a_log_without_command_and_pressure_is_reported(self):
         said = self.problems("logs: [{file: a.csv, time: t_s, displacement: y_mm}]")
         self.assertIn("neither 'command' nor 'pressure'", said)
 
-    def test_two_logs_of_one_name_are_told_apart(self):
+    def test_a_duplicate_log_name_is_reported_and_made_unique(self):
         logs = self.table("""\
             same: {file: a.csv, time: t_s, command: u_kpa, displacement: y_mm}
             logs: [{split: 0.4}, {split: 0.6}]
@@ -73,7 +73,7 @@ class Tables(ForeignCase):
         self.assertIn("a second log is named 'a'", logs[1].problems[0])
         self.assertNotEqual(logs[0].name, logs[1].name)
 
-    def test_a_table_that_says_nothing(self):
+    def test_an_empty_or_malformed_table_is_rejected(self):
         self.assert_unusable("logs: [", "table.yaml:1:")
         self.assert_unusable("", "no list `logs`")
         self.assert_unusable("log: []", "no list `logs`")

@@ -10,12 +10,12 @@ def diagnosis(named=(), rivals=None, verdict="cause_found"):
 
 
 class Judge(unittest.TestCase):
-    def test_an_unchanged_world(self):
+    def test_a_cause_named_for_an_unchanged_finger_is_a_false_alarm(self):
         self.assertEqual(judge("none", diagnosis(verdict="unchanged")), "unchanged")
         self.assertEqual(judge("none", diagnosis(verdict="unexplained")), "unexplained")
         self.assertEqual(judge("none", diagnosis(["leak"])), "false_alarm")
 
-    def test_a_changed_world(self):
+    def test_a_diagnosis_of_a_changed_finger_is_classified_by_its_causes(self):
         self.assertEqual(judge("leak", diagnosis(["leak"])), "first")
         self.assertEqual(judge("stiffening", diagnosis(["sensor_nonlinearity"])), "twin")
         self.assertEqual(judge("leak", diagnosis(["ageing", "leak"])), "listed")
@@ -24,7 +24,7 @@ class Judge(unittest.TestCase):
         self.assertEqual(judge("leak", diagnosis(verdict="unchanged")), "missed")
         self.assertEqual(judge("leak", diagnosis(verdict="unexplained")), "unnamed")
 
-    def test_intervals_of_numbers_that_both_know(self):
+    def test_intervals_are_compared_with_the_true_parameters(self):
         cause = {"id": "contact", "parameters": {"position_mm": {"value": 9.8, "ci95": [9.6, 10]}, "stiffening": {}}}
         truth = {"effects": {"contact": {"parameters": {"position_mm": 9.9, "stiffness_ratio": 3}}}}
         self.assertEqual([one["held"] for one in intervals("first", "contact", {"causes": [cause]}, truth)], [True])

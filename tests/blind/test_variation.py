@@ -50,7 +50,7 @@ def drawn(strength, runs=RUNS, seed=1):
 
 
 class Off(unittest.TestCase):
-    def test_the_bytes_are_those_of_the_programs_before(self):
+    def test_logs_without_variation_equal_those_of_earlier_versions(self):
         for options, expected in GOLDEN.items():
             for name, digest in zip(PROGRAMS, expected):
                 with self.subTest(program=name, options=options):
@@ -62,7 +62,7 @@ class Off(unittest.TestCase):
             with self.subTest(program=name):
                 self.assertEqual(logs(program, "--variation", "0", "--runs", "3"), logs(program))
 
-    def test_more_runs_continue_the_campaign(self):
+    def test_more_runs_are_distinct_and_keep_the_command_of_the_first(self):
         for name, program in PROGRAMS.items():
             with self.subTest(program=name):
                 six = logs(program, "--runs", "6")
@@ -79,7 +79,7 @@ class Drawn(unittest.TestCase):
         # The tolerance is 4 times the standard error of an estimated standard deviation.
         self.assertAlmostEqual(statistics.stdev(values) / deviation, 1, delta=4 / (2 * RUNS) ** 0.5)
 
-    def test_offset_gain_temperature_and_supply(self):
+    def test_deviations_of_run_parameters_are_proportional_to_the_strength(self):
         for strength in (0.5, 1, 2):
             with self.subTest(strength=strength):
                 runs = drawn(strength)
@@ -88,7 +88,7 @@ class Drawn(unittest.TestCase):
                 self.assert_spread(runs["warmer_c"], 0, 2 * strength)
                 self.assert_spread(runs["supply"], 1, 0.02 * strength)
 
-    def test_rates_pulses_and_amplitudes(self):
+    def test_rates_pulses_and_amplitudes_have_the_specified_ranges(self):
         runs = drawn(1)
         self.assertEqual(set(runs["rate_hz"]), {50, 100, 200})
         for rate in (50, 100, 200):
@@ -99,13 +99,13 @@ class Drawn(unittest.TestCase):
                 self.assertLessEqual(max(runs[name]), high)
                 self.assertAlmostEqual(statistics.mean(runs[name]), (low + high) / 2, delta=0.2 * (high - low))
 
-    def test_runs_are_independent_and_belong_to_their_seed(self):
+    def test_runs_are_distinct_and_reproducible_from_the_seed(self):
         first, again, other = drawn(1, 50), drawn(1, 60), drawn(1, 50, seed=2)
         self.assertEqual(first["gain"], again["gain"][:50])
         self.assertNotEqual(first["gain"], other["gain"])
         self.assertEqual(len(set(first["gain"])), 50)
 
-    def test_nothing_is_drawn_without_variation(self):
+    def test_runs_without_variation_have_the_nominal_parameters(self):
         runs = drawn(0, 3)
         self.assertEqual((runs["gain"], runs["offset_share"], runs["pulse_s"], runs["rate_hz"]),
                          ([1] * 3, [0] * 3, [0] * 3, [0] * 3))
@@ -114,7 +114,7 @@ class Drawn(unittest.TestCase):
 class Logs(unittest.TestCase):
     """Tests that the logs of the programs contain the variation that --list-runs prints."""
 
-    def test_1_3_and_6_runs(self):
+    def test_the_requested_number_of_runs_is_written_at_the_drawn_rates(self):
         for name, program in PROGRAMS.items():
             for runs in (1, 3, 6):
                 with self.subTest(program=name, runs=runs):
@@ -126,7 +126,7 @@ class Logs(unittest.TestCase):
                         self.assertEqual(time[0], 0)
                         self.assertAlmostEqual(time[1], 1 / rate)
 
-    def test_runs_begin_unsettled(self):
+    def test_runs_with_variation_begin_with_a_residual_displacement(self):
         for name, program in PROGRAMS.items():
             with self.subTest(program=name):
                 settled = columns(logs(program, "--runs", "1")[0])["displacement_mm"]
@@ -136,7 +136,7 @@ class Logs(unittest.TestCase):
                 # above 0.2 mm.
                 self.assertGreater(min(y[0] for y in varied), 0.2)
 
-    def test_the_size_of_the_variation_scales_with_its_strength(self):
+    def test_the_temperature_shift_is_proportional_to_the_strength(self):
         for name, program in PROGRAMS.items():
             with self.subTest(program=name):
                 temperatures = [statistics.mean(columns(logs(program, "--variation", strength, "--runs", "1", "--seed",
@@ -144,7 +144,7 @@ class Logs(unittest.TestCase):
                 shift = drawn(1, 1, seed=4)["warmer_c"][0]
                 self.assertAlmostEqual(temperatures[1] - temperatures[0], 2 * shift, delta=1.0)
 
-    def test_a_controller_removes_the_zero_that_it_sees(self):
+    def test_a_closed_loop_compensates_a_sensor_offset_of_1_mm(self):
         for name, program in PROGRAMS.items():
             with self.subTest(program=name):
                 at = {}
@@ -160,7 +160,7 @@ class Logs(unittest.TestCase):
                 self.assertLess(abs(shift), 0.5)
                 self.assertGreater(less, 1)
 
-    def test_the_command_of_a_closed_loop_answers_the_noise(self):
+    def test_the_command_of_a_closed_loop_is_rougher_than_in_open_loop(self):
         for name, program in PROGRAMS.items():
             with self.subTest(program=name):
                 def roughness(*options):

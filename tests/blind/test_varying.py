@@ -42,19 +42,19 @@ def plans(args):
 
 
 class Plans(unittest.TestCase):
-    def test_without_variation_no_world_has_its_keys(self):
+    def test_cases_without_variation_have_no_variation_keys(self):
         for name, worlds in plans(arguments(variation=0.0, closed_loop=False, baseline_runs=[3])).items():
             with self.subTest(campaign=name):
                 self.assertGreater(len(worlds), 3)
                 self.assertFalse(any(key in world for world in worlds for key in varying.KEYS))
 
-    def test_with_variation_the_worlds_are_otherwise_the_same(self):
+    def test_variation_adds_only_variation_keys_to_the_cases(self):
         plain = plans(arguments(variation=0.0, closed_loop=False, baseline_runs=[3]))
         for name, worlds in plans(arguments(variation=0.5, closed_loop=True, baseline_runs=[3])).items():
             with self.subTest(campaign=name):
                 self.assertEqual([{**world, "variation": 0.5, "closed_loop": True} for world in plain[name]], worlds)
 
-    def test_1_3_and_6_baseline_runs_of_the_same_fingers(self):
+    def test_each_finger_is_planned_with_1_3_and_6_baseline_runs(self):
         worlds = plans(arguments(variation=1.0, baseline_runs=[1, 3, 6]))["changed"]
         runs = [world.pop("baseline_runs", 3) for world in worlds]
         self.assertEqual([runs.count(n) for n in (1, 3, 6)], [len(worlds) // 3] * 3)
@@ -79,7 +79,7 @@ class Generators(unittest.TestCase):
             module.subprocess = before
         return calls[0]
 
-    def test_first_family_and_textbook(self):
+    def test_variation_options_are_passed_to_both_generators(self):
         world = {"causes": [], "strength": 8, "seed": 1, "make": "play", "columns": "command"}
         with tempfile.TemporaryDirectory() as folder:
             for function, arguments_of in ((judging.run_world, (folder, folder)),
@@ -101,7 +101,7 @@ class Generators(unittest.TestCase):
 
 
 class Records(unittest.TestCase):
-    def test_rows_of_an_earlier_ledger_are_worlds_without_variation(self):
+    def test_rows_of_an_earlier_ledger_count_as_cases_without_variation(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "rows.jsonl"
             path.write_text('{"seed": 1, "outcome": "right"}\n')
@@ -116,7 +116,7 @@ class Records(unittest.TestCase):
         self.assertEqual([row for row in rows if varying.belongs(row, arguments())], [{}])
 
     def test_the_page_states_the_variation_and_the_command(self):
-        self.assertEqual(varying.text(arguments()), "Run-to-run variation: none.")
+        self.assertEqual(varying.text(arguments()), "The simulated fingers have no run-to-run variation.")
         self.assertIn("strength 0.5", varying.text(arguments(variation=0.5)))
         self.assertIn("closed loop", varying.text(arguments(variation=0.5, closed_loop=True)))
         parser = argparse.ArgumentParser()
@@ -139,7 +139,7 @@ class Records(unittest.TestCase):
 
 
 class Help(unittest.TestCase):
-    def test_every_campaign_has_the_option(self):
+    def test_the_help_of_every_campaign_lists_the_variation_options(self):
         for script in (blind_campaign, textbook_campaign, changed_campaign):
             with self.subTest(script=script.__name__):
                 printed, words = io.StringIO(), sys.argv

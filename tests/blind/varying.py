@@ -44,7 +44,7 @@ def text(args):
     closed = " A controller plays the commands of the logs (closed loop)." if getattr(args, "closed_loop", False) else ""
     strength = getattr(args, "variation", 0)
     if not strength:
-        return "Run-to-run variation: none." + closed
+        return "The simulated fingers have no run-to-run variation." + closed
     return (f"Run-to-run variation of strength {strength:g}: each run has its own offset (standard deviation 0.3 % of the "
             "span), gain (1 %), temperature (2 degrees) and supply (2 %), each times the strength, and its own sampling rate "
             "(50, 100 or 200 Hz), input signal and unsettled initial state." + closed)

@@ -42,7 +42,7 @@ rig::CheckReport check(const std::string& name) {
 
 class Broken : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(Broken, SaysAllThatIsWrong) {
+TEST_P(Broken, ReportsExactlyTheExpectedProblems) {
   const rig::CheckReport report = check(GetParam());
   EXPECT_FALSE(report.accepted());
   EXPECT_EQ(report.problems.format(), text_of("broken/" + GetParam() + ".expected"));
@@ -51,7 +51,7 @@ TEST_P(Broken, SaysAllThatIsWrong) {
 INSTANTIATE_TEST_SUITE_P(Configurations, Broken, ::testing::ValuesIn(names()),
                          [](const auto& parameter) { return parameter.param; });
 
-TEST(BrokenConfigurations, AreManyAndOftenBrokenInSeveralPlaces) {
+TEST(BrokenConfigurations, IncludeAtLeast10FilesWithThreeOrMoreProblems) {
   std::size_t several = 0;
   for (const std::string& name : names()) several += check(name).problems.size() >= 3 ? 1U : 0U;
   EXPECT_GE(names().size(), 20U);

@@ -38,7 +38,7 @@ TEST(Examples, AreAccepted) {
   }
 }
 
-TEST(Examples, OfAVacuumRigAreAccepted) {
+TEST(Examples, VacuumRigExamplesAreAccepted) {
   const rig::CheckReport report =
       rig::check_files(std::vector<std::string>{std::string(SOFTGRIP_SOURCE_DIR) + "/config/vacuum"});
   EXPECT_TRUE(report.accepted());
@@ -47,7 +47,7 @@ TEST(Examples, OfAVacuumRigAreAccepted) {
   EXPECT_TRUE(report.has_rig);
 }
 
-TEST(Examples, OfEveryKindAreThere) {
+TEST(Examples, IncludeAtLeastTwoFilesOfEachKind) {
   const rig::CheckReport report = rig::check_files(shipped());
   for (const rig::FileKind kind :
        {rig::FileKind::rig, rig::FileKind::board_map, rig::FileKind::model, rig::FileKind::sequence}) {
@@ -85,7 +85,7 @@ TEST(Check, AFileGivenTwiceIsReadOnce) {
   EXPECT_EQ(rig::check_files(std::vector<std::string>{path, path}).files.size(), 1U);
 }
 
-TEST(Check, CountsErrorsOfEachFileAlone) {
+TEST(Check, CountsErrorsSeparatelyForEachFile) {
   const std::string broken = std::string(SOFTGRIP_SOURCE_DIR) + "/tests/config/broken/";
   const rig::CheckReport report =
       rig::check_files(std::vector<std::string>{broken + "files_broken.yaml", broken + "model.yaml"});
@@ -100,7 +100,7 @@ TEST(Check, AMissingFileIsAProblem) {
   EXPECT_EQ(report.problems.list()[0].message, "the file cannot be read: No such file or directory");
 }
 
-TEST(Check, AFolderIsAllThatIsInItAndEachFileOnce) {
+TEST(Check, AFolderIncludesAllFilesAndEachFileOnce) {
   const std::string boards = std::string(SOFTGRIP_SOURCE_DIR) + "/config/boards";
   const rig::CheckReport report =
       rig::check_files(std::vector<std::string>{boards, boards + "/adam-6024.yaml"});
@@ -139,7 +139,7 @@ class CheckFolder : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("softgrip_check_folder_" + std::to_string(::getpid()));
 };
 
-TEST_F(CheckFolder, WhatIsOfNoKindIsPassedOver) {
+TEST_F(CheckFolder, FilesOfUnknownKindAreSkipped) {
   write("sub/model.yaml", "name: m\nsource: s\nactuator: []\n");
   write("compose.yaml", "version: 3\n");
   write("notes.txt", "name: [\n");
@@ -151,11 +151,11 @@ TEST_F(CheckFolder, WhatIsOfNoKindIsPassedOver) {
   EXPECT_FALSE(says(report, "not a rig, a board map"));
 }
 
-TEST_F(CheckFolder, WithNothingToReadIsAProblem) {
+TEST_F(CheckFolder, AFolderWithoutReadableFilesIsAProblem) {
   EXPECT_TRUE(says(check(), "contain no readable *.yaml"));
 }
 
-TEST_F(CheckFolder, SequencesAreFittedToARigThatHasErrorsElsewhere) {
+TEST_F(CheckFolder, SequencesAreCheckedAgainstARigWithOtherErrors) {
   write_rig({{"mode: \"0660\"", "mode: \"9999\""}});
   write("far.yaml",
         "name: far\nchannels: [left, middle]\nsteps:\n  - move: {displacement_mm: 90, duration_s: 1}\n");
@@ -166,7 +166,7 @@ TEST_F(CheckFolder, SequencesAreFittedToARigThatHasErrorsElsewhere) {
   EXPECT_TRUE(says(report, "goes to 90 mm")) << report.problems.format();
 }
 
-TEST_F(CheckFolder, AndToTheChannelsOfOneThatCouldBeRead) {
+TEST_F(CheckFolder, SequencesAreCheckedAgainstTheReadableChannels) {
   write_rig({{"  - name: left\n", "  - name: left\n    limits: {pressure_max_kpa: high}\n"}});
   write("far.yaml",
         "name: far\nsteps:\n"
@@ -179,7 +179,7 @@ TEST_F(CheckFolder, AndToTheChannelsOfOneThatCouldBeRead) {
   EXPECT_TRUE(says(report, "goes to 80 mm, channel 'right'")) << report.problems.format();
 }
 
-TEST_F(CheckFolder, WhatComparesSeveralPartsIsToldBesideOtherErrors) {
+TEST_F(CheckFolder, CrossChecksAreReportedTogetherWithOtherErrors) {
   write_rig({{"watchdog_timeout_s: 0.5", "watchdog_timeout_s: 0.02"}, {"mode: \"0660\"", "mode: \"9999\""}});
   const rig::CheckReport report = check();
   EXPECT_TRUE(says(report, "`mode` must state the permissions of the socket, found `9999`"))

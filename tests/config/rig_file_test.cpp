@@ -34,7 +34,7 @@ rig::RigFile loaded(const std::string& name) {
   return rig.value_or(rig::RigFile{});
 }
 
-TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
+TEST(RigFile, TheBenchRigHasTheValuesOfTheFile) {
   const rig::RigFile rig = loaded("rig_tcp.yaml");
   EXPECT_EQ(rig.name, "bench");
   EXPECT_EQ(rig.settings.rate_hz, 200);
@@ -77,7 +77,7 @@ TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
   EXPECT_EQ(rig.seed, std::nullopt);
 }
 
-TEST(RigFile, TheDeprecatedNameOfAKeyIsReadAndNotRepeated) {
+TEST(RigFile, ADeprecatedKeyIsReadButRefusedBesideTheNewKey) {
   std::ostringstream shipped_text;
   shipped_text << std::ifstream(shipped("rig.yaml")).rdbuf();
   const std::string line = "  overrun_cycles: 0 ";
@@ -98,7 +98,7 @@ TEST(RigFile, TheDeprecatedNameOfAKeyIsReadAndNotRepeated) {
       << problems.format();
 }
 
-TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {
+TEST(RigFile, TheSimulatedRigHasThePlantsOfTheFile) {
   const rig::RigFile rig = loaded("rig.yaml");
   const auto& board = std::get<simulation::SimulatedBoardSettings>(rig.board);
   ASSERT_EQ(board.channels.size(), 2U);
@@ -113,7 +113,7 @@ TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {
   EXPECT_EQ(rig.seed, 1U);
 }
 
-TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
+TEST(RigFile, AVacuumIsSimulatedWithinTheValveRange) {
   Problems parsing;
   Document document = document::parse_file(shipped("rig.yaml"), parsing);
   for (Node::Entry& entry : document.root.entries) {
@@ -187,7 +187,7 @@ class Converters : public ::testing::Test {
   const std::filesystem::path root_ = std::filesystem::canonical(scratch_.path());
 };
 
-TEST_F(Converters, OfOneNameAreRefusedWithBothAndTheirPlaceInTheFile) {
+TEST_F(Converters, AnAmbiguousConverterNameIsRefusedWithFileAndLine) {
   const std::string problems = problems_of("mcp4725", "mcp4725");
   for (const char* const said :
        {"rig_iio.yaml:11:18: ", "rig_iio.yaml:12:18: ",
@@ -205,7 +205,7 @@ TEST_F(Converters, AreChosenByAddressByNodeAndByPath) {
       << "device addresses of another computer are not checked on this computer";
 }
 
-TEST_F(Converters, AHeartbeatCountsAsAWatchdogIfEveryValveRestsWithoutPower) {
+TEST_F(Converters, AHeartbeatIsAWatchdogOnlyIfValvesVentWithoutPower) {
   const std::pair<std::string, std::string> heartbeat{
       "    exchange_deadline_s",
       "    heartbeat: {device: 1-0062, channel: voltage0, raw: [0, 4095], timeout_s: 0.5}\n    "
@@ -225,7 +225,7 @@ TEST_F(Converters, AHeartbeatCountsAsAWatchdogIfEveryValveRestsWithoutPower) {
       << "these valves keep their pressure without power, so the heartbeat does not make the board vent";
 }
 
-TEST_F(Converters, APressureSensorIsReadInKilopascalsAboveAmbient) {
+TEST_F(Converters, APressureSensorCanBeReadInKilopascals) {
   Problems problems;
   const auto reading = edited(
       "rig_iio.yaml",
@@ -241,7 +241,7 @@ TEST_F(Converters, APressureSensorIsReadInKilopascalsAboveAmbient) {
   EXPECT_EQ(reading.rig.wiring[0].pressure->valid_max, 250);
 }
 
-TEST_F(Converters, OneChannelListedTwiceIsRefusedUnderWhateverWords) {
+TEST_F(Converters, AConverterChannelListedTwiceIsRefused) {
   for (const auto& [first, second] : {std::pair{"1-0060", "iio:device1"}, {"other", "other"}}) {
     EXPECT_NE(problems_of(first, second).find("is already listed at 11:10"), std::string::npos)
         << first << "\n"
@@ -249,7 +249,7 @@ TEST_F(Converters, OneChannelListedTwiceIsRefusedUnderWhateverWords) {
   }
 }
 
-TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {
+TEST(RestPressure, IsReadPerChannelAndIsZeroByDefault) {
   for (const char* const name : {"rig.yaml", "vacuum/rig.yaml", "vacuum/rig_tcp.yaml"}) {
     const rig::RigFile rig = loaded(name);
     for (const control::ChannelSettings& channel : rig.settings.channels)
@@ -274,7 +274,7 @@ TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {
       << "the board may vent to 0 kPa, because the limits of the channel do not apply to the board";
 }
 
-TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
+TEST(RestPressure, AValueBeyondTheLimitsIsRefusedWithTheRange) {
   for (const char* const beyond : {"-41", "60.5"}) {
     Problems problems;
     const auto rig =
@@ -290,7 +290,7 @@ TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
   }
 }
 
-TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
+TEST(RestPressure, TheWatchdogPressureMustEqualTheRestPressure) {
   const std::string asked = "this board does not vent by itself when softgripd dies";
   for (const auto& [old, now, said] :
        std::vector<std::array<std::string, 3>>{// an output of 0 V of this board sets full vacuum
@@ -314,7 +314,7 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
 
 // The limits of the channel apply to the daemon, but not to the board. The board can therefore set a pressure
 // beyond these limits, up to the range of the valve.
-TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
+TEST(RestPressure, TheWatchdogPressureIsBoundedByTheValveRangeOnly) {
   using Edits = std::vector<std::pair<std::string, std::string>>;
   const auto with = [](Edits edits, const Edits& more) {
     edits.insert(edits.end(), more.begin(), more.end());
@@ -340,7 +340,7 @@ TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   }
 }
 
-TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
+TEST(RestPressure, ADifferentPressureWithoutPowerCausesAWarning) {
   const auto warning = [](const std::string& name,
                           const std::vector<std::pair<std::string, std::string>>& edits) {
     Problems problems;
@@ -517,7 +517,7 @@ class EveryKey : public ::testing::TestWithParam<std::string> {
   Document document_;
 };
 
-TEST_P(EveryKey, IsNeededOrKnownToBeOptional) {
+TEST_P(EveryKey, IsRequiredOrListedAsOptional) {
   const std::set<std::string> optional{"board.simulated.plants.left.object",
                                        "board.simulated.plants.right.object", "faults.unsteady_is_fault",
                                        "real_time.cpu_dma_latency_us"};
@@ -538,7 +538,7 @@ TEST_P(EveryKey, IsNeededOrKnownToBeOptional) {
   for (const std::string& path : accepted) EXPECT_TRUE(optional.contains(path)) << path;
 }
 
-TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
+TEST_P(EveryKey, IsRefusedWithAnInvalidValue) {
   Node original = document_.root;
   for_each_entry(original, "", [&](Node& owner, std::size_t index, const std::string& path) {
     const Node taken = owner.entries[index].value;
@@ -560,7 +560,7 @@ TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
   });
 }
 
-TEST_P(EveryKey, IsRefusedWhenItIsUnknown) {
+TEST_P(EveryKey, IsRefusedIfTheNameIsUnknown) {
   Node original = document_.root;
   for_each_entry(original, "", [&](Node& owner, std::size_t index, const std::string& path) {
     const std::string taken = owner.entries[index].key;

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 namespace softgrip::document::corpus_test {
 namespace {
 
-TEST(Corpus, IsHarmless) {
+TEST(Corpus, NoCorpusFileCrashesTheParser) {
   std::size_t files = 0;
   const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/document/corpus";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

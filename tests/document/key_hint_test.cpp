@@ -5,7 +5,7 @@
 namespace softgrip::document::key_hint_test {
 namespace {
 
-TEST(UnitAtEnd, IsTheProjectsOwn) {
+TEST(UnitAtEnd, RecognisesOnlyUnitsOfTheProject) {
   EXPECT_EQ(unit_at_end("squeeze_kpa"), "kpa");
   EXPECT_EQ(unit_at_end("squeeze_speed_kpa_per_s"), "kpa_per_s");
   EXPECT_EQ(unit_at_end("speed_mm_per_s"), "mm_per_s");

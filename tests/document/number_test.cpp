@@ -27,7 +27,7 @@ struct Refused {
   std::string hint;
 };
 
-TEST(Number, EveryFiniteDoubleComesBackExactly) {
+TEST(Number, FiniteDoublesAreWrittenAndReadExactly) {
   constexpr std::uint64_t seed = 20'240'611;
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
@@ -53,7 +53,7 @@ TEST(Number, AcceptsPlainDecimals) {
   EXPECT_TRUE(std::signbit(*parse_number(plain("-0")).value));
 }
 
-TEST(Number, RefusesEverythingElseWithWhatWasProbablyMeant) {
+TEST(Number, RefusesOtherNotationsWithAMessage) {
   const std::vector<Refused> refused{
       {".nan", "only finite numbers are allowed"},
       {".inf", "only finite numbers are allowed"},
@@ -88,7 +88,7 @@ TEST(Number, RefusesEverythingElseWithWhatWasProbablyMeant) {
   }
 }
 
-TEST(Number, WhatDoesNotFitADoubleIsRefused) {
+TEST(Number, ValuesOutsideTheDoubleRangeAreRefused) {
   EXPECT_EQ(parse_number(plain("1e999")).message, "is `1e999`, too large or too close to zero for a number");
   EXPECT_FALSE(parse_number(plain("1e-999")).value);
   EXPECT_TRUE(parse_number(plain("0e-999")).value);
@@ -102,7 +102,7 @@ TEST(Number, QuotedNumbersAreTexts) {
   EXPECT_EQ(parsed.hint, "remove the quotes");
 }
 
-TEST(Number, TheLocaleDoesNotMatter) {
+TEST(Number, ParsingIsIndependentOfTheLocale) {
   const char* const old = std::setlocale(LC_ALL, nullptr);
   const std::string before = old == nullptr ? "C" : old;
   for (const char* const name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"}) {
@@ -113,7 +113,7 @@ TEST(Number, TheLocaleDoesNotMatter) {
   std::setlocale(LC_ALL, before.c_str());
 }
 
-TEST(Integer, IsWholeAndFits) {
+TEST(Integer, MustBeAWholeDecimalWithin64Bits) {
   EXPECT_EQ(parse_integer(plain("-9223372036854775808")).value, std::numeric_limits<std::int64_t>::min());
   EXPECT_EQ(parse_integer(plain("9223372036854775807")).value, std::numeric_limits<std::int64_t>::max());
   EXPECT_EQ(parse_integer(plain("9223372036854775808")).message,
@@ -125,7 +125,7 @@ TEST(Integer, IsWholeAndFits) {
   EXPECT_EQ(parse_integer(plain("1_000")).hint, "write 1000");
 }
 
-TEST(Boolean, IsTrueOrFalseAndNothingElse) {
+TEST(Boolean, AcceptsOnlyTrueAndFalse) {
   EXPECT_EQ(parse_boolean(plain("true")).value, true);
   EXPECT_EQ(parse_boolean(plain("false")).value, false);
   for (const char* const text : {"yes", "Yes", "on", "TRUE", "True", "y", "1"}) {

@@ -31,7 +31,7 @@ std::string repeated(std::string_view text, std::size_t times) {
   return out;
 }
 
-TEST(Parse, KeepsOrderKindsAndPlaces) {
+TEST(Parse, KeepsOrderKindsAndLocations) {
   Problems problems;
   const Document document = parse("a.yaml", "b: 1\na: 'two'\nlist: [x, {k: v}]\nnothing:\n", problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
@@ -57,7 +57,7 @@ TEST(Parse, AcceptsWindowsLineEndsAndCountsColumnsInBytes) {
   EXPECT_EQ(document.problem({2, 7}, "x").line_text, "\"ä\": 2");
 }
 
-TEST(Parse, AnEmptyValueStandsWhereItIsMissing) {
+TEST(Parse, AnEmptyValueHasALocation) {
   Problems problems;
   const Document document = parse("a.yaml", "a:\n\n# comment below\nb: 1\nc:\n  -\n  - 2\n", problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
@@ -66,7 +66,7 @@ TEST(Parse, AnEmptyValueStandsWhereItIsMissing) {
   EXPECT_EQ(value_of(document.root, "c").items[0].at, (Location{6, 3}));
 }
 
-TEST(Parse, AnEmptyFileIsNothing) {
+TEST(Parse, AFileWithoutContentGivesANullDocument) {
   Problems problems;
   const Document document = parse("a.yaml", "# only a comment\n", problems);
   EXPECT_TRUE(problems.empty());
@@ -74,7 +74,7 @@ TEST(Parse, AnEmptyFileIsNothing) {
   EXPECT_EQ(document.root.kind, Node::Kind::null);
 }
 
-TEST(Parse, RefusesWhatExpandsOrRepeats) {
+TEST(Parse, RefusesAnchorsAliasesTagsAndMergeKeys) {
   EXPECT_EQ(problems_of("a: &x 1\nb: *x\n"), (Lines{"1:4: an anchor (`&name`) is not accepted here",
                                                     "2:4: an alias (`*name`) is not accepted here"}));
   EXPECT_EQ(problems_of("a: !!int 1\nb: ! 2\nc: !own {}\n"),
@@ -90,7 +90,7 @@ TEST(Parse, QuotedOperatorsAreTexts) {
   EXPECT_EQ(problems_of("a: '*x'\nb: \"&x\"\n'<<': '!t'\n"), Lines{});
 }
 
-TEST(Parse, ADuplicateKeyNamesTheFirstAndTheFirstStays) {
+TEST(Parse, ADuplicateKeyIsRefusedAndTheFirstIsKept) {
   Problems problems;
   const Document document = parse("a.yaml", "a: 1\nb: {k: 1, k: 2, k: 3}\na: 2\n", problems);
   EXPECT_EQ(lines_of(problems),
@@ -129,13 +129,13 @@ TEST(Parse, BytesMustBeUtf8AndPrintable) {
   EXPECT_EQ(problems_of("a: müßig \xe2\x82\xac \xf0\x9f\x99\x82\n"), Lines{});
 }
 
-TEST(Parse, TabsDoNotIndent) {
+TEST(Parse, ATabInTheIndentationIsRefused) {
   EXPECT_EQ(problems_of("a:\n\tb: 1\n  \tc: 2\n"),
             (Lines{"2:1: the indentation contains a tab (and 1 more lines)"}));
   EXPECT_EQ(problems_of("a:\t1\nb: 2\t# comment\n \t\n"), Lines{});
 }
 
-TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
+TEST(Parse, SyntaxErrorsNameLocationAndCause) {
   EXPECT_EQ(problems_of("a: [1, 2\nb: 3\n"),
             (Lines{"2:2: the list `[...]` that starts at 1:4 is not closed here: expected `,` or `]`"}));
   EXPECT_EQ(problems_of("a: {b: 1\n"),
@@ -152,7 +152,7 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
   EXPECT_EQ(problems_of("a: @b\n"), (Lines{"1:4: this character cannot start a value"}));
 }
 
-TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
+TEST(Parse, AnUnclosedQuotationMarkIsReported) {
   // If a file ends with a line break, the YAML parser accepts a quoted text without a closing quote. The
   // check of the project must refuse this text.
   for (const char* const text : {"a: 'open\n", "a: \"open\nb: 2\n\n", "a: \"open \\\"\n", "a: 'it''s\n"}) {
@@ -162,7 +162,7 @@ TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
   EXPECT_EQ(problems_of("a: 'it''s'\nb: \"a \\\" b\"\nc: \"\\\\\"\n\"d\": ''\n"), Lines{});
 }
 
-TEST(Parse, WhatStandsBeforeASyntaxErrorIsKept) {
+TEST(Parse, ValuesBeforeASyntaxErrorAreKept) {
   Problems problems;
   const Document document = parse("a.yaml", "a: 1\nb: [2, {c: 3}, 4\nd: 5\n", problems);
   EXPECT_FALSE(document.complete);
@@ -170,7 +170,7 @@ TEST(Parse, WhatStandsBeforeASyntaxErrorIsKept) {
   EXPECT_TRUE(value_of(document.root, "b").refused);
 }
 
-TEST(Parse, BoundsAreExact) {
+TEST(Parse, SizeDepthAndNodeLimitsAreExact) {
   Bounds bounds;
   bounds.bytes = 6;
   EXPECT_EQ(problems_of("a: 12\n", bounds), Lines{});
@@ -206,7 +206,7 @@ void parse_on_small_stack(const std::string& text) {
   pthread_attr_destroy(&attributes);
 }
 
-TEST(Parse, DeepNestingOfAnyKindNeedsNoStack) {
+TEST(Parse, DeepNestingIsRefusedOnASmallStack) {
   for (const char* const opening : {"[", "{a: ", "- ", "? ", "[{", "- ? ", "{? ", ": "}) {
     SCOPED_TRACE(opening);
     parse_on_small_stack(repeated(opening, 200'000 / std::string(opening).size()));
@@ -216,7 +216,7 @@ TEST(Parse, DeepNestingOfAnyKindNeedsNoStack) {
   parse_on_small_stack(stairs);
 }
 
-TEST(Parse, AnAliasBombIsHarmless) {
+TEST(Parse, AnAliasBombIsRefusedWithinOneSecond) {
   std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 10; ++i) {
     const std::string before = "*a" + std::to_string(i - 1);
@@ -231,7 +231,7 @@ TEST(Parse, AnAliasBombIsHarmless) {
   EXPECT_EQ(problems.size(), 10U + 81U);
 }
 
-TEST(Parse, TheWorstFilesWithinTheBoundsAreReadInTime) {
+TEST(Parse, LargeFilesWithinTheLimitsAreReadWithin5Seconds) {
   std::string keys = "{";
   for (int i = 0; i < 9'000; ++i) keys += "key_number_" + std::to_string(i) + ": 1, ";
   const std::string same = "{" + repeated("k: 1, ", 9'000) + "}";
@@ -247,7 +247,7 @@ TEST(Parse, TheWorstFilesWithinTheBoundsAreReadInTime) {
   }
 }
 
-TEST(ParseFile, SaysWhyAFileCannotBeRead) {
+TEST(ParseFile, AnUnreadableFileIsReportedWithTheReason) {
   Problems problems;
   EXPECT_FALSE(parse_file("/nonexistent/rig.yaml", problems).complete);
   EXPECT_FALSE(parse_file("/", problems).complete);
@@ -255,7 +255,7 @@ TEST(ParseFile, SaysWhyAFileCannotBeRead) {
                                        "1:1: the file cannot be read: Is a directory"}));
 }
 
-TEST(ParseFile, StopsReadingAtTheBound) {
+TEST(ParseFile, StopsReadingAtTheSizeLimit) {
   const ScratchFolder scratch;
   const std::string path = scratch.path() + "/large.yaml";
   std::ofstream(path) << "a: 1\n";
@@ -280,7 +280,7 @@ TEST(ParseFile, RefusesADeviceAndAPipeWithoutWaiting) {
                                        "1:1: the file cannot be read: it is a pipe, not a regular file"}));
 }
 
-TEST(ParseFile, ReadsWhatWasWritten) {
+TEST(ParseFile, ReadsTheContentOfAFile) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("softgrip_parse_" + std::to_string(::getpid()) + ".yaml"))
           .string();

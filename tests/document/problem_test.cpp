@@ -13,7 +13,7 @@ Problem problem_at(int line, int column, std::string text) {
   return {"a.yaml", {line, column}, std::move(text), "wrong", ""};
 }
 
-TEST(Problems, ABlockShowsPlaceLineCaretAndHint) {
+TEST(Problems, AMessageShowsLocationLineCaretAndHint) {
   Problems problems;
   problems.add({"rig.yaml", {12, 5}, "    delay_ms: 130", "unknown key `delay_ms`", "write `delay_s`"});
   EXPECT_EQ(problems.format(),
@@ -23,17 +23,17 @@ TEST(Problems, ABlockShowsPlaceLineCaretAndHint) {
             "    hint: write `delay_s`\n");
 }
 
-TEST(Problems, NothingToSay) {
+TEST(Problems, WithoutProblemsTheTextIsEmpty) {
   EXPECT_EQ(Problems().format(), "");
 }
 
-TEST(Problems, AProblemWithoutALineIsOneLine) {
+TEST(Problems, AProblemWithoutAQuotedLineIsOneLine) {
   Problems problems;
   problems.add({"rig.yaml", {1, 1}, "", "the file cannot be read", ""});
   EXPECT_EQ(problems.format(), "rig.yaml:1:1: the file cannot be read\n");
 }
 
-TEST(Problems, AreShownFileByFileLineByLine) {
+TEST(Problems, AreGroupedByFileAndSortedByLine) {
   Problems problems;
   problems.add({"b.yaml", {9, 1}, "", "nine", ""});
   problems.add({"a.yaml", {2, 1}, "", "two", ""});
@@ -46,7 +46,7 @@ TEST(Problems, AreShownFileByFileLineByLine) {
   EXPECT_EQ(problems.list().front().message, "nine");
 }
 
-TEST(Problems, WarningsRefuseNothing) {
+TEST(Problems, WarningsAreNotCountedAsProblems) {
   Problems problems;
   problems.warn(problem_at(1, 1, "a"));
   EXPECT_TRUE(problems.empty());
@@ -64,7 +64,7 @@ TEST(Problems, OnlyTheFirstAreKeptAndTheRestIsCounted) {
   EXPECT_EQ(problems.without_repeats().size(), Problems::most + 7);
 }
 
-TEST(Problems, RepetitionsGo) {
+TEST(Problems, WithoutRepeatsRemovesRepetitions) {
   Problems problems;
   problems.add(problem_at(1, 1, "a"));
   problems.add(problem_at(2, 1, "b"));
@@ -83,7 +83,7 @@ std::pair<std::string, std::string> shown_line(const Problem& problem) {
   return {text.substr(first, second - first - 1), text.substr(second, text.find('\n', second) - second)};
 }
 
-TEST(Problems, TheCaretStandsUnderTheCharacterWhateverItsBytes) {
+TEST(Problems, TheCaretIsBelowTheCharacterOfTheColumn) {
   const auto [line, caret] = shown_line(problem_at(1, 10, "größe: 1"));
   EXPECT_EQ(line, "    größe: 1");
   EXPECT_EQ(caret,
@@ -123,7 +123,7 @@ TEST(Shown, ControlCharactersAreVisible) {
   EXPECT_EQ(shown(std::string(100, 'x'), 10), "xxxxxxxxxx...");
 }
 
-TEST(Nearest, FindsSlipsOfTheFingerOnly) {
+TEST(Nearest, SuggestsAKeyForSmallTypingErrorsOnly) {
   const std::vector<std::string> keys{"pressure_min_kpa", "pressure_max_kpa", "name", "rate_hz"};
   EXPECT_EQ(nearest("presure_max_kpa", keys), "pressure_max_kpa");
   EXPECT_EQ(nearest("nmae", keys), "");  // two of four letters are wrong, so no key is suggested

@@ -33,7 +33,7 @@ void use_delay(MapReader& reader) {
   reader.number("delay_s", {0, 10});
 }
 
-TEST(Reader, ReadsWhatIsThere) {
+TEST(Reader, ReadsEveryTypeOfValue) {
   const Lines lines = reported("n: 0.5\ni: -3\nb: true\nt: hello\nc: two\nl: [1, 2]\nm: {k: 1}\ns: [x]\n",
                                [](MapReader& reader) {
                                  EXPECT_EQ(reader.number("n", {}), 0.5);
@@ -58,12 +58,12 @@ TEST(Reader, ReadsWhatIsThere) {
   EXPECT_EQ(lines, Lines{});
 }
 
-TEST(Reader, ALackingUnitIsRecognised) {
+TEST(Reader, AMissingUnitIsRecognised) {
   EXPECT_EQ(reported("delay: 0.1\n", use_delay),
             (Lines{"1:1: unknown key `delay` in the map | the unit is missing: did you mean `delay_s`?"}));
 }
 
-TEST(Reader, AnotherUnitIsConverted) {
+TEST(Reader, ADifferentUnitIsConvertedInTheHint) {
   EXPECT_EQ(reported("delay_ms: 130\n", use_delay),
             (Lines{"1:1: unknown key `delay_ms` in the map | unit `ms` is not used here: write `delay_s` in "
                    "seconds (130 ms = 0.13)"}));
@@ -88,7 +88,7 @@ TEST(Reader, AMisspeltKeyIsOneProblemNotTwo) {
             (Lines{"1:1: unknown key `dealy_s` in the map | did you mean `delay_s`?"}));
 }
 
-TEST(Reader, AKeyThatIsThereIsNotSuggested) {
+TEST(Reader, APresentKeyIsNotSuggested) {
   EXPECT_EQ(reported("delay_s: 0.1\ndelay_ms: 130\n", use_delay),
             (Lines{"2:1: unknown key `delay_ms` in the map | known here: `delay_s`"}));
 }
@@ -101,7 +101,7 @@ TEST(Reader, AMissingSpaceAfterTheColonIsRecognised) {
                    "colon"}));
 }
 
-TEST(Reader, AMissingKeyStandsAtTheMap) {
+TEST(Reader, AMissingKeyIsReportedAtTheMap) {
   EXPECT_EQ(reported("other: 1\n",
                      [](MapReader& r) {
                        r.number("other", {});
@@ -110,7 +110,7 @@ TEST(Reader, AMissingKeyStandsAtTheMap) {
             (Lines{"1:1: the map lacks the key `delay_s`"}));
 }
 
-TEST(Reader, RangesSayWhatIsAllowedAndGiveTheNearest) {
+TEST(Reader, AValueOutOfRangeIsReportedAndClamped) {
   EXPECT_EQ(reported("delay_s: 130\n",
                      [](MapReader& r) {
                        EXPECT_EQ(r.number("delay_s", {0, 1}), 1.0);
@@ -126,7 +126,7 @@ TEST(Reader, RangesSayWhatIsAllowedAndGiveTheNearest) {
   EXPECT_EQ(reported("k: 1\n", [](MapReader& r) { EXPECT_EQ(r.number("k", {1, 1}), 1.0); }), Lines{});
 }
 
-TEST(Reader, WrongKindsAreNamed) {
+TEST(Reader, WrongTypesAreNamedInTheMessage) {
   const Lines lines =
       reported("n: [1]\ni: {a: 1}\nb: yes\nt:\nc: tow\nl: [1, x]\ns: 1\nm: 2\n", [](MapReader& r) {
         r.number("n", {1, 2});
@@ -147,7 +147,7 @@ TEST(Reader, WrongKindsAreNamed) {
              "7:4: `s` must be a list, found `1` | put `- ` before each item"}));
 }
 
-TEST(Reader, ListsHaveTheirLength) {
+TEST(Reader, ListsMustHaveTheRequiredLength) {
   EXPECT_EQ(reported("l: [1, 2, 3]\n",
                      [](MapReader& r) {
                        EXPECT_EQ(r.numbers("l", 2, {}), (std::vector<double>{1, 2}));
@@ -160,7 +160,7 @@ TEST(Reader, ListsHaveTheirLength) {
             (Lines{"1:4: `l` must be a list of 2 numbers, found `5`"}));
 }
 
-TEST(Reader, TextsAreOneLineAndPrintable) {
+TEST(Reader, TextsMustBeOnePrintableLine) {
   EXPECT_EQ(reported("t: \"a\\nb\"\n", [](MapReader& r) { EXPECT_EQ(r.text("t"), ""); }),
             (Lines{"1:4: `t` must be one line without control characters, found `a\\nb` | start a text of "
                    "several lines with `>-`"}));
@@ -168,7 +168,7 @@ TEST(Reader, TextsAreOneLineAndPrintable) {
   EXPECT_EQ(reported("t: \"\\x9b31m\"\n", [](MapReader& r) { r.text("t"); }).size(), 1U);
 }
 
-TEST(Reader, WhatIsNoMapIsReportedOnce) {
+TEST(Reader, AValueThatIsNotAMapIsReportedOnce) {
   EXPECT_EQ(
       reported("- a\n", use_delay),
       (Lines{"1:1: the map must be a map of keys, found a list | remove the `- ` or `[ ]` if there is only "
@@ -187,7 +187,7 @@ TEST(Reader, ARefusedAliasIsNotReportedAgain) {
             2U);
 }
 
-TEST(Reader, ADocumentCutShortLacksNothing) {
+TEST(Reader, AnIncompleteDocumentReportsNoMissingKeys) {
   EXPECT_EQ(reported("a: 1\nb: [\n",
                      [](MapReader& r) {
                        r.text("a");
@@ -198,12 +198,12 @@ TEST(Reader, ADocumentCutShortLacksNothing) {
             1U);
 }
 
-TEST(Reader, AWordThatTheSyntaxErrorAddedToTheLastValueIsNotJudged) {
+TEST(Reader, AValueJoinedByASyntaxErrorIsNotReported) {
   // The value of `delay_s` ends at the second colon, so the YAML parser returns the value "1 name".
   EXPECT_EQ(reported("delay_s: 1\n  name: x\n", use_delay).size(), 1U);
 }
 
-TEST(Reader, KnowsWhichKeysWereGood) {
+TEST(Reader, GoodIsTrueOnlyForValidKeys) {
   reported("a: 1\nb: x\nc: *d\ne: 2\n", [](MapReader& r) {
     for (const char* const key : {"a", "b", "c", "d", "e"}) r.optional_number(key, {});
     EXPECT_TRUE(r.good("a"));
@@ -215,7 +215,7 @@ TEST(Reader, KnowsWhichKeysWereGood) {
   });
 }
 
-TEST(Reader, WarningsAndReportsStandAtTheValue) {
+TEST(Reader, WarningsAndReportsHaveTheLocationOfTheValue) {
   Problems problems;
   const Document document = parse("a.yaml", "first: 1\nsecond: 2\n", problems);
   MapReader reader(document, document.root, problems, "m");

@@ -18,7 +18,7 @@ std::string open_at_end(const std::string& text) {
   return out;
 }
 
-TEST(Brackets, ThoseThatAreNotClosedAreOpen) {
+TEST(Brackets, UnclosedBracketsAreReportedAsOpen) {
   EXPECT_EQ(open_at_end("a: [1, 2\nb: 3\n"), "[1:4");
   EXPECT_EQ(open_at_end("a: {b: [1, 2}\n"), "{1:4 [1:8")
       << "`}` does not close `[`, and `]` does not close `{`";
@@ -26,14 +26,14 @@ TEST(Brackets, ThoseThatAreNotClosedAreOpen) {
   EXPECT_EQ(open_at_end("a: [1, 2]\nb: {c: [3]}\n"), "");
 }
 
-TEST(Brackets, OfPlainTextsQuotesAndCommentsOpenNothing) {
+TEST(Brackets, BracketsInTextsQuotesAndCommentsAreIgnored) {
   EXPECT_EQ(open_at_end("about: the tip [mm and more\n"), "");
   EXPECT_EQ(open_at_end("about: \"[\" # {\nb: '['\nc: it's [\n"), "");
   EXPECT_EQ(open_at_end("about: >-\n  - [ one\n  { two\nb: [3\n"), "[4:4");
   EXPECT_EQ(open_at_end("a: [\"x\\\"[\", 'it''s ['\n"), "[1:4");
 }
 
-TEST(Brackets, OnlyWhatStandsBeforeThePlaceCounts) {
+TEST(Brackets, OnlyBracketsBeforeTheLocationCount) {
   const std::string text = "a: [1, {b: 2}]\n";
   EXPECT_EQ(open_brackets(text, {1, 4}).size(), 0U);
   EXPECT_EQ(open_brackets(text, {1, 5}).size(), 1U);

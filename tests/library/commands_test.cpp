@@ -76,14 +76,14 @@ class LibraryAndCommand : public testing::Test {
       ("library_commands_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
-TEST_F(LibraryAndCommand, Simulate) {
+TEST_F(LibraryAndCommand, SimulationsAreIdentical) {
   const Log log = read_log(path("one.csv"));
   SimulateOptions options;
   options.noise = 0.05;
   EXPECT_EQ(Model::load(model_).simulate(log.time_s, log.pressure_command_kpa, options), log.displacement);
 }
 
-TEST_F(LibraryAndCommand, Identify) {
+TEST_F(LibraryAndCommand, IdentificationsAreIdentical) {
   const Json expected =
       plain(run("identify --starts 3 --seed 7 --json --data " + path("one.csv") + " " + path("two.csv") +
                 " --validate " + path("three.csv") + " --out " + path("out")),
@@ -104,7 +104,7 @@ TEST_F(LibraryAndCommand, Identify) {
   EXPECT_NE(found.html.find("<html"), std::string::npos);
 }
 
-TEST_F(LibraryAndCommand, IdentifyWithAStructure) {
+TEST_F(LibraryAndCommand, IdentificationsWithAutomaticStructureAreIdentical) {
   const Json expected = plain(
       run("identify --structure auto --starts 3 --json --data " + path("one.csv") + " --out " + path("out")),
       {"call", "wall_s"});
@@ -114,7 +114,7 @@ TEST_F(LibraryAndCommand, IdentifyWithAStructure) {
   EXPECT_EQ(plain(identify({read_log(path("one.csv"))}, options).json, {"call", "wall_s"}), expected);
 }
 
-TEST_F(LibraryAndCommand, Validate) {
+TEST_F(LibraryAndCommand, ValidationsAreIdentical) {
   const std::string stiffer = path("stiffer.yaml");
   const Json expected =
       plain(run("validate --json --model " + stiffer + " --data " + path("one.csv") + " " + path("two.csv")),
@@ -125,7 +125,7 @@ TEST_F(LibraryAndCommand, Validate) {
   EXPECT_GT(found.predictions.at(0).rmse, 0.1);
 }
 
-TEST_F(LibraryAndCommand, Diagnose) {
+TEST_F(LibraryAndCommand, DiagnosesAreIdentical) {
   run("identify --starts 3 --data " + path("one.csv") + " --out " + path("fit"));
   const std::string fitted = path("fit/model.yaml");
   const auto differing = {
@@ -142,7 +142,7 @@ TEST_F(LibraryAndCommand, Diagnose) {
   EXPECT_EQ(found.causes[0].id, "transport_delay");
 }
 
-TEST_F(LibraryAndCommand, DiagnoseAChange) {
+TEST_F(LibraryAndCommand, ChangeDiagnosesAreIdentical) {
   const Json expected =
       plain(run("diagnose --json --model " + model_ + " --healthy " + path("one.csv") + " " +
                 path("two.csv") + " --data " + path("three.csv") + " --out " + path("out")),
@@ -201,7 +201,7 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
   for (const double time_s : times_s) EXPECT_LT(time_s, 1);
 }
 
-TEST_F(LibraryAndCommand, HealthOfRecordings) {
+TEST_F(LibraryAndCommand, HealthResultsAreIdentical) {
   run("baseline --data " + path("one.csv") + " " + path("two.csv") + " --model " + model_ + " --out " +
       path("base"));
   const std::vector<std::string> recordings{path("one.csv"), path("two.csv"), path("three.csv")};
@@ -230,7 +230,7 @@ TEST_F(LibraryAndCommand, HealthOfRecordings) {
   EXPECT_TRUE(stages.empty()) << "no recording is evaluated again because all scores are stored";
 }
 
-TEST_F(LibraryAndCommand, HealthIsRefusedOrStopped) {
+TEST_F(LibraryAndCommand, HealthThrowsForInvalidInputAndOnCancellation) {
   run("baseline --data " + path("one.csv") + " --model " + model_ + " --out " + path("base"));
   const std::vector<std::string> recordings{path("one.csv")};
   EXPECT_THROW((void)health({}, path("base")), InvalidArgument);
@@ -246,7 +246,7 @@ TEST_F(LibraryAndCommand, HealthIsRefusedOrStopped) {
   EXPECT_THROW((void)health(recordings, path("base")), FileError);
 }
 
-TEST_F(LibraryAndCommand, RefusalsAreExceptions) {
+TEST_F(LibraryAndCommand, InvalidInputThrowsAnException) {
   const Log log = read_log(path("one.csv"));
   EXPECT_THROW((void)identify({}), InvalidArgument);
   EXPECT_THROW((void)identify({log}, {.fixed = {"no.such"}}), Refused);

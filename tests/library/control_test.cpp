@@ -60,7 +60,7 @@ TEST(LibraryControl, FollowsAReferenceOnTheSimulatedBoard) {
   EXPECT_EQ(command_kpa[0], 0);
 }
 
-TEST(LibraryControl, HoldsTheLimitsForAnyRequest) {
+TEST(LibraryControl, LimitsPressureAndSlewRateOfAnyRequest) {
   Limits limits;
   limits.pressure_max_kpa = 50;
   EXPECT_EQ(limit(limits, 80, 50, 0.01).command_kpa, 50);
@@ -81,7 +81,7 @@ TEST(LibraryControl, APidContinuesAtTheAlignedCommand) {
   EXPECT_GT(5 + pid.step(3, 2, 5), 12);
 }
 
-TEST(LibraryControl, AReferenceRefusesWhatHasNoMeaning) {
+TEST(LibraryControl, AReferenceRefusesInvalidSegments) {
   Reference reference(1);
   EXPECT_EQ(reference.at(5), 1);
   EXPECT_FALSE(reference.ramp_to(nan, 1));
@@ -113,7 +113,7 @@ TEST(LibraryControl, RefusesAModelWithoutAnInverse) {
   EXPECT_NO_THROW(Controller{all});
 }
 
-TEST(LibraryControl, RefusesSettingsByName) {
+TEST(LibraryControl, ErrorNamesTheInvalidSetting) {
   const auto refused = [](auto change) {
     ControllerSettings all = settings();
     change(all);
@@ -135,7 +135,7 @@ TEST(LibraryControl, RefusesSettingsByName) {
   EXPECT_EQ(refused([](auto& s) { s.sensor_noise = 0; }), "sensor_noise");
 }
 
-TEST(LibraryBoard, TheSimulatedBoardHasObjectsAndRefusals) {
+TEST(LibraryBoard, SimulatesObjectsAndRefusesInvalidExchanges) {
   EXPECT_THROW(SimulatedBoard({}), InvalidArgument);
   EXPECT_THROW(SimulatedBoard(std::vector<SimulatedFinger>(17, {.model = bench_twin()})), InvalidArgument);
   SimulatedBoard board({{.model = bench_twin()}});

@@ -54,7 +54,7 @@ std::string refusal(Change change) {
   return "";
 }
 
-TEST_F(LibraryLog, ReadsBackWhatItWrites) {
+TEST_F(LibraryLog, AWrittenLogIsReadBackUnchanged) {
   Log log = simulated();
   log.displacement[7] = nan;
   log.temperature_c.assign(log.time_s.size(), 21.5);
@@ -88,7 +88,7 @@ TEST_F(LibraryLog, ImportsAFileOfAnotherProgram) {
   EXPECT_THROW((void)read_log(path, {.columns = {{"force", "2"}}}), InvalidArgument);
 }
 
-TEST_F(LibraryLog, RefusesFilesWithTheirProblems) {
+TEST_F(LibraryLog, RefusesInvalidFilesWithTheLineOfTheError) {
   EXPECT_THROW((void)read_log("/no/such/file.csv"), FileError);
   EXPECT_THROW((void)read_log(file("empty.csv", "\n")), FileError);
   EXPECT_THROW((void)read_log(file("text.csv", "a,b\nx,y\n")), FileError);

@@ -28,7 +28,7 @@ std::string refused_argument(Call call) {
   return "";
 }
 
-TEST(LibraryModel, ReadsBackWhatItWrites) {
+TEST(LibraryModel, AWrittenModelIsReadBackUnchanged) {
   const Model model = bench_twin();
   EXPECT_EQ(model.name(), "bench_twin");
   EXPECT_EQ(model.unit(), Unit::mm);
@@ -58,7 +58,7 @@ TEST(LibraryModel, NamesTheLineOfAMalformedFile) {
   EXPECT_THROW((void)Model::parse(std::string("\0\xff", 2)), FileError);
 }
 
-TEST(LibraryModel, SimulatesStepByStepAsAtOnce) {
+TEST(LibraryModel, StepwiseSimulationEqualsTheSimulationOfALog) {
   const Model model = bench_twin();
   const Course course = sine(0, 40, 0.2, 1000, 0.01);
   const std::vector<double> at_once = model.simulate(course.time_s, course.value);
@@ -114,7 +114,7 @@ TEST(LibraryModel, StatesThatAReferenceIsOutOfReach) {
   EXPECT_GT(std::count(inverse.out_of_reach.begin(), inverse.out_of_reach.end(), 1), 100);
 }
 
-TEST(LibraryModel, RefusesArgumentsByName) {
+TEST(LibraryModel, ErrorNamesTheInvalidArgument) {
   const Model model = bench_twin();
   const std::vector<double> two{0, 1};
   const std::vector<double> three{0, 1, 2};
@@ -142,7 +142,7 @@ TEST(LibraryModel, RefusesArgumentsByName) {
   EXPECT_EQ(refused_argument([&] { Simulator(model, nan); }), "sample_time_s");
 }
 
-TEST(LibraryModel, AMessageHasShapeAndUnit) {
+TEST(LibraryModel, ErrorStatesLengthsAndUnit) {
   const std::vector<double> two{0, 1};
   const std::vector<double> one{0};
   try {
@@ -154,7 +154,7 @@ TEST(LibraryModel, AMessageHasShapeAndUnit) {
   }
 }
 
-TEST(LibraryModel, AStepIgnoresWhatIsNotFinite) {
+TEST(LibraryModel, AStepIgnoresInvalidArguments) {
   Simulator simulator(bench_twin(), 0.01);
   const double before = simulator.step(0.01, 10);
   EXPECT_TRUE(std::isnan(simulator.step(-1, 10)));

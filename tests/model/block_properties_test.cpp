@@ -65,7 +65,7 @@ TEST(EveryBlock, DoesNothingAtItsNeutralValues) {
 
 // The output segments of a block must follow each other without a gap in time or value. Their total duration
 // must equal the duration of the input.
-TEST(EveryBlock, KeepsTimeAndContinuity) {
+TEST(EveryBlock, PreservesDurationAndContinuity) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     const Model model{"one", "test", {default_block(type)}};
     const Chain<double> chain(model);
@@ -125,7 +125,7 @@ TEST(EveryBlock, RestsAfterReset) {
 // Simulates a linear command in one step and in two half steps. A block that is documented as exact must give
 // the same reading in both cases. For every other block, the two readings may differ slightly for a step of 5
 // ms.
-TEST(EveryBlock, StepsInHalvesAsInOne) {
+TEST(EveryBlock, TwoHalfStepsEqualOneStep) {
   // These blocks are approximate in this chain. The first two blocks of the list are lags. A lag is exact for
   // a linear input, but here another lag precedes it.
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
@@ -163,7 +163,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
 
 // peek() must give the same result as step(), with one exception: only step() takes a corner of the pressure
 // within a sample into account.
-TEST(EveryBlock, ForetellsWhatItsStepGives) {
+TEST(EveryBlock, PeekPredictsTheResultOfStep) {
   for_every_block([](std::size_t type) {
     const BlockInfo& info = catalogue()[type].info;
     if (info.inverse != Inverse::implicit) return;
@@ -180,7 +180,7 @@ TEST(EveryBlock, ForetellsWhatItsStepGives) {
   });
 }
 
-TEST(EveryBlock, GivesTheSameWithDerivatives) {
+TEST(EveryBlock, DerivativesDoNotChangeTheResult) {
   for_every_block([](std::size_t type) {
     const Model model = twin_with(type);
     std::vector<Dual<double>> values;

@@ -21,8 +21,8 @@ std::string_view what_it_does(Kind kind) {
     case Kind::pressure:
       return "The block changes the pressure [kPa], in series with the other blocks.";
     case Kind::element:
-      return "The block computes a displacement [mm] from the pressure [kPa]. The displacements of all "
-             "elements are added.";
+      return "The block computes a displacement [mm] from the pressure [kPa]. The model adds the "
+             "displacements of all blocks that compute a displacement.";
     case Kind::displacement:
       return "The block changes the displacement [mm], in series with the other blocks.";
     case Kind::reading:
@@ -34,19 +34,20 @@ std::string_view what_it_does(Kind kind) {
 std::string_view how_undone(Inverse inverse) {
   switch (inverse) {
     case Inverse::implicit:
-      return "The feedforward inverts the block together with the actuator.";
+      return "The feedforward inverts the block and the blocks of the actuator together.";
     case Inverse::lead:
-      return "The feedforward compensates the block by a lead, so that the output of the block is the "
+      return "The feedforward compensates the block with a lead term, so that the output of the block is the "
              "planned pressure.";
     case Inverse::preview:
-      return "The feedforward compensates the block with the future value of the reference.";
+      return "The feedforward compensates the dead time of the block with the future value of the reference.";
     case Inverse::play:
-      return "The feedforward adds half of the band in the direction of motion.";
+      return "To compensate the block, the feedforward adds half of the band to the command, in the "
+             "direction of motion.";
     case Inverse::bound:
-      return "The block has no inverse, so the feedforward limits the reference.";
+      return "The feedforward does not invert the block. The block sets a limit for the reference.";
     case Inverse::none:
-      return "The block has no inverse. The feedforward `planned` uses the block, and the feedforward "
-             "`full_model` refuses a model with it.";
+      return "The block has no inverse. The feedforward `planned` uses the block. The feedforward "
+             "`full_model` refuses a model that contains the block.";
     case Inverse::ignored:
       return "The feedforward does not compensate the block.";
   }
@@ -85,23 +86,27 @@ std::string page() {
   std::ostringstream out;
   out << "# Blocks\n\n"
          "A model file lists the blocks of each component of the gripper: the valve, the actuator, the "
-         "load and the sensor. The signal passes through the components in this order, and through the "
-         "blocks of a component in the order of the model file:\n\n"
+         "load and the sensor. The signal passes through valve, actuator, load and sensor in this order. "
+         "Inside a component, "
+         "the signal passes through the blocks in the order of the model file:\n\n"
          "    command [kPa] -> valve -> actuator -> load -> sensor -> reading [mm]\n\n"
-         "In the equations, u is the command, p the pressure, y the input displacement of the "
-         "block, z its output, and t the time since the start of the first log. An apostrophe denotes"
-         " the derivative with respect to time. For each component, this page lists the blocks in this "
+         "In the equations, u is the commanded pressure, p the pressure, y the input displacement of the "
+         "block, and z the output displacement of the block. The symbol t is the time since the start of the "
+         "first log. An apostrophe denotes the derivative with respect to time. For each component, this "
+         "page lists the blocks in this "
          "order: blocks that change the pressure, blocks that compute a displacement from the pressure, "
          "blocks that change the displacement, and blocks that change the reading.\n\n"
          "The column \"typical\" contains a parameter value at which the block has a visible effect. "
-         "The column \"no effect at\" contains the value at which the block has no effect; \"-\" means"
-         " that the parameter has no such value. A model file must state every parameter that is"
-         " not marked as optional. A model file with a value outside the allowed range is "
-         "refused.\n\n"
+         "The column \"no effect at\" contains the parameter value at which the block has no effect. A \"-\" "
+         "in the column \"no effect at\" means that the block has an effect at every value of the parameter. "
+         "A model file must state every parameter "
+         "that is"
+         " not marked as optional. softgrip refuses a model file with a value outside the allowed range.\n\n"
          "If a model file has `output_unit: deg`, the output of the model is a bending angle, "
-         "and mm means deg in all keys and units on this page. Without this key, the unit is mm."
+         "and mm means deg in all keys and units on this page. Without the key `output_unit`, the output of "
+         "the model is a displacement in mm."
          " A rig accepts only models in mm.\n\n"
-         "This page is written by `model_blocks_page --write` from the declarations in "
+         "`model_blocks_page --write` writes this page from the declarations in "
          "`model/blocks/`.\n";
   Station station = Station::valve;
   bool first = true;

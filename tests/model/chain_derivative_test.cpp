@@ -87,20 +87,20 @@ void expect_derivatives_agree(const Model& model, SignalName signal) {
   }
 }
 
-TEST(ChainDerivatives, PublishedModelOnTriangles) {
+TEST(ChainDerivatives, AgreeWithDifferencesForThePublishedModel) {
   expect_derivatives_agree(preset("zhang2025"), SignalName::tp1);
 }
 
 // The delay is not a multiple of the sample time. If the delay were a multiple, the response to a kink would
 // have two different one-sided derivatives.
-TEST(ChainDerivatives, TwinWithFractionalDelayAndLag) {
+TEST(ChainDerivatives, AgreeWithDifferencesForAFractionalDelay) {
   Model twin = preset("bench_twin");
   twin.blocks[0].values[0] = 0.1317;
   expect_derivatives_agree(twin, SignalName::tp1);
   expect_derivatives_agree(twin, SignalName::steps);
 }
 
-TEST(ChainDerivatives, DelayOnTheGridStillHasOne) {
+TEST(ChainDerivatives, DelayOfWholeSamplesHasADerivative) {
   const Model twin = preset("bench_twin");
   Model later = twin;
   const double h = 1e-6;
@@ -111,7 +111,7 @@ TEST(ChainDerivatives, DelayOnTheGridStillHasOne) {
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR((b[i] - a[i]) / h, jets[i].v[0], 2e-2) << i;
 }
 
-TEST(ChainDerivatives, EveryBlockInTheTwin) {
+TEST(ChainDerivatives, EveryBlockAgreesWithFiniteDifferences) {
   Model twin = preset("bench_twin");
   twin.blocks[0].values[0] = 0.1317;
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
@@ -133,7 +133,7 @@ TEST(ChainDerivatives, EveryBlockInTheTwin) {
 
 // At the value 0, each of these parameters has no effect. The derivative at 0 must not be 0, so that a fit
 // finds the direction in which the parameter must change.
-TEST(ChainDerivatives, NeutralValuesHaveThem) {
+TEST(ChainDerivatives, AreNonzeroAtNeutralValues) {
   const Model twin = preset("bench_twin");
   for (const std::string id : {"supply_sag",
                                "leak",
@@ -194,7 +194,7 @@ double outside_of_differences(Chain<double>& chain, double p, const Surroundings
   return outside;
 }
 
-TEST(ChainPeek, IsWhatTheStepWillGive) {
+TEST(ChainPeek, PeekPredictsTheResultOfStep) {
   // The models are the actuators of the presets, an actuator with a contact, and an actuator that contains
   // every block with an implicit inverse.
   std::vector<Model> models{preset("zhang2025"), preset("bench_twin"),

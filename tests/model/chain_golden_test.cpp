@@ -17,7 +17,7 @@
 namespace softgrip::model::testing::chain_golden_test {
 namespace {
 
-TEST(ChainGolden, PresetsGiveTheNumbersOfScipy) {
+TEST(ChainGolden, PresetsAgreeWithTheSciPySolution) {
   std::ifstream file(SOFTGRIP_SOURCE_DIR "/tests/model/golden/chain_golden.csv");
   std::string line;
   ASSERT_TRUE(std::getline(file, line));

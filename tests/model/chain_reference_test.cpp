@@ -56,7 +56,7 @@ double largest_error(const Model& model, SignalName signal, double rate_hz) {
   return worst;
 }
 
-TEST_P(ChainReference, AgreesWithinAMillionthOfAMillimetre) {
+TEST_P(ChainReference, AgreesWithCvodeWithinOneNanometre) {
   const Case& c = GetParam();
   const double worst = largest_error(preset(c.model), c.signal, c.rate_hz);
   RecordProperty("largest_error_mm", std::to_string(worst * 1e9) + " e-9");
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Tests the exponents 2, 3 and 4 with the model bench_twin. gamma and eta are scaled so that the state
 // saturates at the same value for each exponent.
-TEST(ChainReferenceExponents, AgreeAtOneKilohertz) {
+TEST(ChainReferenceExponents, AgreeWithCvodeForHigherExponents) {
   for (const int exponent : {2, 3, 4}) {
     Model model = preset("bench_twin");
     std::vector<double>& v = model.blocks[*position_of(model, "bouc_wen")].values;
@@ -90,7 +90,7 @@ TEST(ChainReferenceExponents, AgreeAtOneKilohertz) {
   }
 }
 
-TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
+TEST(ChainReferenceFractionalDelay, AgreesWithCvodeForAFractionalDelay) {
   for (const double delay : {0.0004, 0.1237}) {
     Model model = preset("bench_twin");
     model.blocks[0].values[0] = delay;
@@ -136,7 +136,7 @@ std::vector<double> followed_mm(const std::vector<double>& y, Acceleration&& acc
   return at_samples;
 }
 
-TEST(ChainReferenceLeap, BehindALeapOfTheHysteresisInertiaIsWhereItShouldBe) {
+TEST(ChainReferenceLeap, InertiaAgreesAfterAStepOfTheHysteresis) {
   constexpr double period_s = 0.045, damping = 0.16, omega = 2 * std::numbers::pi / period_s;
   const Model finger = preset("zhang2025");
   const std::vector<double> expected = followed_mm(displacement_mm(finger), [](double z, double v, double y) {

@@ -45,7 +45,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
-TEST(Chain, NeutralElementsAddNothing) {
+TEST(Chain, NeutralBlocksHaveNoEffect) {
   for (const std::string_view id : {"bouc_wen", "kelvin_voigt"}) {
     const std::size_t type = *find_block(id);
     Model lonely;
@@ -74,7 +74,7 @@ TEST(Chain, NominalSampleTimeChangesNothing) {
       1e-12);
 }
 
-TEST(Chain, TimeStampsWithRoundingAreTheNominalSampleTime) {
+TEST(Chain, RoundedTimestampsCountAsTheNominalSampleTime) {
   const Model twin = preset("bench_twin");
   Chain<double> exact(twin, {}, 5e-3), rounded(twin, {}, 5e-3);
   for (int i = 1; i < 2000; ++i) {
@@ -83,7 +83,7 @@ TEST(Chain, TimeStampsWithRoundingAreTheNominalSampleTime) {
   }
 }
 
-TEST(Chain, StationsShowTheirSignals) {
+TEST(Chain, ReturnsTheSignalOfEachComponent) {
   Model model = preset("bench_twin");
   model = with_block(model, {*find_block("contact"), {5.0, 2.0}});
   model = with_block(model, {*find_block("quantisation"), {0.5}});
@@ -105,7 +105,7 @@ TEST(Chain, StationsShowTheirSignals) {
   EXPECT_EQ(bare.after(Station::load), bare.reading_mm());
 }
 
-TEST(Chain, RestIsWhereARiseAndALongHoldLead) {
+TEST(Chain, ResetReachesTheStateAfterARiseAndALongHold) {
   const Model model = with_block(preset("bench_twin"), {*find_block("contact"), {5.0, 2.0}});
   Chain<double> risen(model);
   risen.step(10, 35);
@@ -119,7 +119,7 @@ TEST(Chain, RestIsWhereARiseAndALongHoldLead) {
   EXPECT_EQ(rested.pressure_kpa(), 0);
 }
 
-TEST(Chain, AHeldOutputIsAJumpAndAHold) {
+TEST(Chain, AStepOfTheCommandEqualsAVerySteepRamp) {
   // Compares the response to a jump of the command with the response to a very steep ramp.
   const Model twin = preset("bench_twin");
   Chain<double> held(twin, {}, 5e-3), steep(twin);
@@ -131,7 +131,7 @@ TEST(Chain, AHeldOutputIsAJumpAndAHold) {
   }
 }
 
-TEST(Chain, CopiesGoTheirOwnWays) {
+TEST(Chain, CopiesAreIndependent) {
   Chain<double> a(everything(typical), {}, 1e-3, 5);
   for (int i = 1; i < 500; ++i) a.step(1e-3, 0.1 * i);
   Chain<double> b = a;
@@ -140,7 +140,7 @@ TEST(Chain, CopiesGoTheirOwnWays) {
   EXPECT_EQ(b.step(1e-3, 40), y);
 }
 
-TEST(Chain, SameSeedSameReadings) {
+TEST(Chain, OnlyEqualSeedsGiveEqualReadings) {
   const Model model = with_block(preset("bench_twin"), {*find_block("sensor_noise"), {0.05, 0.02}});
   EXPECT_EQ(response(model, SignalName::tp1, 5e-3, 5e-3, 9), response(model, SignalName::tp1, 5e-3, 5e-3, 9));
   EXPECT_NE(response(model, SignalName::tp1, 5e-3, 5e-3, 9), response(model, SignalName::tp1, 5e-3, 5e-3, 8));
@@ -167,7 +167,7 @@ TEST(Chain, SteppingAllocatesNothing) {
   }
 }
 
-TEST(Chain, ValuesReplaceTheModelsOwn) {
+TEST(Chain, GivenValuesReplaceTheValuesOfTheModel) {
   const Model twin = preset("bench_twin");
   std::vector<double> values = flat_values(twin);
   for (double& v : values) v *= v == 1.0 ? 1.0 : 1.1;
@@ -175,7 +175,7 @@ TEST(Chain, ValuesReplaceTheModelsOwn) {
   for (int i = 1; i < 500; ++i) ASSERT_EQ(a.step(0.01, 0.1 * i), b.step(0.01, 0.1 * i));
 }
 
-TEST(Chain, FindsItsBlocks) {
+TEST(Chain, FindsTheBlocksOfTheModelByType) {
   const Chain<double> chain(preset("bench_twin"));
   ASSERT_NE(chain.find<TransportDelay<double>>(), nullptr);
   EXPECT_EQ(chain.find<TransportDelay<double>>()->delay_s(), 0.13);

@@ -88,12 +88,12 @@ TEST(Model, PathsNameEveryValueOnce) {
   EXPECT_EQ(parameter_spec(model, *find_path(model, "bouc_wen.exponent")).whole, true);
 }
 
-TEST(Model, FlatValuesGoBack) {
+TEST(Model, FlatValuesRestoreTheModel) {
   const Model model = preset("bench_twin");
   EXPECT_EQ(with_values(model, flat_values(model)), model);
 }
 
-TEST(Model, BlocksFindTheirPlace) {
+TEST(Model, AddedBlocksAreSortedIntoTheChain) {
   Model model;
   for (const std::string_view id :
        {"quantisation", "kelvin_voigt", "contact", "valve_lag", "sensor_noise", "bouc_wen"}) {
@@ -108,7 +108,7 @@ TEST(Model, BlocksFindTheirPlace) {
   EXPECT_FALSE(position_of(without_block(model, *find_block("contact")), "contact"));
 }
 
-TEST(Model, SaysWhatIsWrong) {
+TEST(Model, ValidationReportsEveryError) {
   const std::size_t lag = *find_block("valve_lag"), bouc_wen = *find_block("bouc_wen");
   EXPECT_EQ(validate(Model{}).size(), 1u);  // one error: the model has no element
   Model model = preset("bench_twin");

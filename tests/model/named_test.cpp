@@ -13,7 +13,7 @@ static_assert(parameter_index<ValveLag>("time_constant_s") == 0);
 static_assert(parameter_index<SlowCreep>("time_constant_s") == 1);
 static_assert(parameter_index<KelvinVoigt>("c2_kpa_s_per_mm") == 4);
 
-TEST(Named, TypesAreThoseOfTheCatalogue) {
+TEST(Named, TypesMatchTheCatalogue) {
   EXPECT_EQ(block_type<ValveLag>(), *find_block("valve_lag"));
   EXPECT_EQ(block_type<Quantisation>(), catalogue().size() - 1);
 }
@@ -25,7 +25,7 @@ TEST(Named, EveryNameHasTheIndexOfItsValue) {
   EXPECT_EQ(find_parameter(knots, "knot16_mm"), parameter_index<SensorFreeDrift>("knot16_mm"));
 }
 
-TEST(Named, WhatIsNotNamedDoesNothing) {
+TEST(Named, UnspecifiedParametersAreNeutral) {
   const BlockSpec block = block_of<AsymmetricBoucWen>({{"epsilon_per_kpa", 0.3}});
   EXPECT_EQ(block, (BlockSpec{block_type<AsymmetricBoucWen>(), {0, 0.3, 0}}));
   EXPECT_EQ(block_of<ValveLag>({}), neutral_block(block_type<ValveLag>()));
@@ -40,7 +40,7 @@ TEST(Named, ValuesAreReadAndWrittenByName) {
   EXPECT_THROW((void)value<KelvinVoigt>(*find_block<KelvinVoigt>(model), "k8_kpa_per_mm"), std::out_of_range);
 }
 
-TEST(Named, ModelsAreAskedByType) {
+TEST(Named, FindsAndRemovesBlocksByType) {
   const Model model = preset("bench_twin");
   EXPECT_TRUE((has_any<Contact, ValveLag>(model)));
   EXPECT_FALSE((has_any<Contact, Inertia>(model)));
@@ -50,7 +50,7 @@ TEST(Named, ModelsAreAskedByType) {
   EXPECT_FALSE(position_of<ValveLag>(without_block<ValveLag>(model)));
 }
 
-TEST(BlockDescriptor, AValueThatNoBlockHasIsAnError) {
+TEST(BlockDescriptor, AnInvalidParameterIndexThrows) {
   const BlockDescriptor& lag = catalogue()[block_type<ValveLag>()];
   EXPECT_THROW((void)lag.spec(1), std::out_of_range);
   const BlockDescriptor& spring = catalogue()[block_type<KelvinVoigt>()];

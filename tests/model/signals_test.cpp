@@ -8,7 +8,7 @@
 namespace softgrip::model::signals_test {
 namespace {
 
-TEST(Signals, NamesGoBothWays) {
+TEST(Signals, SignalNamesRoundTrip) {
   EXPECT_EQ(signal_names.size(), 6u);
   for (const auto& [signal, name] : signal_names) {
     EXPECT_EQ(name_of(signal), name);

@@ -67,12 +67,12 @@ class EqualToTheCommands(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def test_simulate(self):
+    def test_simulate_returns_the_readings_of_the_command(self):
         log = self.logs["two"]
         moved = Model.load(MODEL).simulate(log.t, log.command, noise=0.05, seed=2)
         np.testing.assert_array_equal(moved, log.displacement)
 
-    def test_identify(self):
+    def test_identify_returns_the_report_of_the_command(self):
         expected = json.loads(command("identify", "--starts", 3, "--seed", 7, "--json", "--out", self.at / "out",
                                       "--data", self.at / "one.csv", self.at / "two.csv",
                                       "--validate", self.at / "three.csv"))
@@ -86,13 +86,13 @@ class EqualToTheCommands(unittest.TestCase):
         self.assertIn("bouc_wen.alpha_mm_per_kpa", found._repr_html_())
         self.assertEqual(pickle.loads(pickle.dumps(found)).report, found.report)
 
-    def test_identify_with_a_structure(self):
+    def test_identify_with_automatic_structure_equals_the_command(self):
         expected = json.loads(command("identify", "--structure", "auto", "--starts", 3, "--json", "--out",
                                       self.at / "auto", "--data", self.at / "one.csv"))
         found = identify(self.logs["one"], "auto", starts=3)
         self.assertEqual(plain(found.report, "call", "wall_s"), plain(expected, "call", "wall_s"))
 
-    def test_validate(self):
+    def test_validate_returns_the_report_of_the_command(self):
         expected = json.loads(command("validate", "--json", "--model", self.at / "stiffer.yaml", "--data",
                                       self.at / "one.csv", self.at / "two.csv"))
         found = validate(Model.load(self.at / "stiffer.yaml"), [self.logs["one"], self.logs["two"]])
@@ -100,7 +100,7 @@ class EqualToTheCommands(unittest.TestCase):
         self.assertEqual(found.predictions[0].rmse, expected["rmse_mm"]["one"])
         self.assertIn("RMSE", found._repr_html_())
 
-    def test_diagnose(self):
+    def test_diagnose_returns_the_report_of_the_command(self):
         differing = ("call", "wall_s", "stages_s", "software", "given", "model", "logs", "next_experiment", "closed_loop",
                      "experiments_judged", "experiment_advice", "gauge_check")
         fitted = identify(self.logs["one"], starts=3).model
@@ -113,7 +113,7 @@ class EqualToTheCommands(unittest.TestCase):
         self.assertIn("transport_delay", found._repr_html_())
         self.assertEqual(pickle.loads(pickle.dumps(found)).extended, found.extended)
 
-    def test_diagnose_a_change(self):
+    def test_diagnose_with_healthy_logs_equals_the_command(self):
         expected = json.loads(command("diagnose", "--json", "--out", self.at / "change", "--model", MODEL, "--healthy",
                                       self.at / "one.csv", self.at / "two.csv", "--data", self.at / "three.csv"))
         found = diagnose(Model.load(MODEL), self.logs["three"], healthy=[self.logs["one"], self.logs["two"]])
@@ -129,7 +129,7 @@ class EqualToTheCommands(unittest.TestCase):
 
 
 class Objects(unittest.TestCase):
-    def test_a_log_reads_back(self):
+    def test_a_written_log_is_read_back_unchanged(self):
         log = simulated()
         with tempfile.TemporaryDirectory() as folder:
             log.write(pathlib.Path(folder) / "log.csv")
@@ -140,7 +140,7 @@ class Objects(unittest.TestCase):
         copy = pickle.loads(pickle.dumps(log))
         np.testing.assert_array_equal(copy.displacement, log.displacement)
 
-    def test_a_log_of_a_data_frame(self):
+    def test_a_log_is_created_from_a_pandas_data_frame(self):
         import pandas
         log = simulated()
         frame = pandas.DataFrame({"time_s": log.t, "pressure_command_kpa": log.command, "displacement_mm": log.displacement})
@@ -148,7 +148,7 @@ class Objects(unittest.TestCase):
         with self.assertRaisesRegex(softgrip.InvalidArgument, "no column 'pressure_command_kpa'"):
             Log.from_pandas(frame.drop(columns="pressure_command_kpa"))
 
-    def test_a_file_of_another_program(self):
+    def test_a_csv_file_of_another_program_is_converted(self):
         log = simulated()
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "other.csv"
@@ -158,7 +158,7 @@ class Objects(unittest.TestCase):
         np.testing.assert_allclose(read.command, log.command, atol=1e-9)
         self.assertIn("--command", read.notes[0])
 
-    def test_a_log_keeps_its_own_values(self):
+    def test_a_log_copies_its_arrays_and_is_read_only(self):
         t, pressure = sine()
         log = Log(t, pressure, pressure)
         pressure[:] = 0
@@ -166,20 +166,20 @@ class Objects(unittest.TestCase):
         with self.assertRaises(ValueError):
             log.command[0] = 1
 
-    def test_a_masked_value_is_no_reading(self):
+    def test_a_masked_value_is_treated_as_nan(self):
         t, pressure = sine()
         masked = np.ma.masked_array(pressure, mask=t > 10)
         np.testing.assert_array_equal(np.isnan(Log(t, pressure, masked).displacement), t > 10)
         with self.assertRaisesRegex(softgrip.InvalidArgument, "^pressure: value 201 is nan"):
             Model.load(MODEL).simulate(t, masked)
 
-    def test_an_exception_pickles(self):
+    def test_an_exception_can_be_pickled(self):
         with self.assertRaises(softgrip.InvalidArgument) as caught:
             Model.load(MODEL).simulate([0, 1], [0, np.nan])
         copy = pickle.loads(pickle.dumps(caught.exception))
         self.assertEqual((copy.argument, str(copy)), (caught.exception.argument, str(caught.exception)))
 
-    def test_figures(self):
+    def test_logs_and_validations_are_plotted(self):
         import matplotlib
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
@@ -192,7 +192,7 @@ class Objects(unittest.TestCase):
             found.plot("no such log")
         plt.close("all")
 
-    def test_the_docstrings_hold(self):
+    def test_all_doctests_of_the_package_pass(self):
         before = os.getcwd()
         os.chdir(SOURCE)
         try:
@@ -212,7 +212,7 @@ class Imports(unittest.TestCase):
         return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
 
-    def test_without_numpy_the_client_is_there(self):
+    def test_the_client_can_be_imported_without_numpy(self):
         done = self.run_python("import sys; sys.modules['numpy'] = None; import softgrip; print(softgrip.Gripper.__name__)\n"
                                "try: softgrip.Model\nexcept ImportError as error: print(error)")
         self.assertEqual(done.stdout.splitlines()[0], "Gripper", done.stderr)
@@ -245,7 +245,7 @@ class HostileArguments(unittest.TestCase):
                 count += 1
         return count
 
-    def test_arguments_of_models(self):
+    def test_model_functions_reject_invalid_arguments(self):
         model = Model.load(MODEL)
         t = [0.0, 0.01]
         calls = [Model, Model.load, Model.parse, lambda bad: Model.parse("name: x", bad),
@@ -259,14 +259,14 @@ class HostileArguments(unittest.TestCase):
         for number, call in enumerate(calls):
             self.assertGreater(self.refused(call), len(self.BAD) // 2, number)
 
-    def test_arguments_of_logs(self):
+    def test_log_functions_reject_invalid_arguments(self):
         t = np.arange(50) * 0.1
         for number, call in enumerate([lambda bad: Log(bad, t, t), lambda bad: Log(t, bad, t), lambda bad: Log(t, t, bad),
                                        lambda bad: Log(t, t, t, unit=bad), lambda bad: Log(t, t, t, name=bad).check(),
                                        Log.read, lambda bad: Log.read("/no/such", channel=bad)]):
             self.assertGreater(self.refused(call), len(self.BAD) // 2, number)
 
-    def test_arguments_of_functions(self):
+    def test_analysis_functions_reject_invalid_arguments(self):
         model, log = Model.load(MODEL), simulated()
         for number, call in enumerate([
                 identify, lambda bad: identify(log, bad), lambda bad: identify([bad]),
@@ -277,19 +277,19 @@ class HostileArguments(unittest.TestCase):
                 lambda bad: diagnose(bad, log), lambda bad: diagnose(model, bad)]):
             self.assertGreater(self.refused(call), len(self.BAD) // 2, number)
 
-    def test_names_and_numbers_of_a_fit(self):
+    def test_identify_rejects_invalid_parameter_names_and_numbers(self):
         log = simulated()
         for bad in ({"fixed": "text"}, {"fixed": [1]}, {"fixed": 1}, {"fixed": ["no.such"]}, {"starts": 0}, {"starts": 1.5},
                     {"starts": 2**70}, {"branches": 9}, {"seed": -1}, {"threads": 10**6}, {"fit_share": 0}):
             with self.assertRaises(softgrip.SoftgripError, msg=bad):
                 identify(log, **bad)
 
-    def test_a_message_has_argument_shape_and_unit(self):
+    def test_an_error_message_states_argument_shape_and_unit(self):
         with self.assertRaisesRegex(softgrip.InvalidArgument, r"pressure: shape \(2, 2\); .* in kPa") as caught:
             Model.load(MODEL).simulate([0, 1], np.zeros((2, 2)))
         self.assertEqual(caught.exception.argument, "pressure")
 
-    def test_an_argument_has_its_name_in_python(self):
+    def test_an_error_message_begins_with_the_name_of_the_python_argument(self):
         model, t = Model.load(MODEL), [0.0, 0.01]
         for name, call in (("t", lambda: model.simulate([1, 0], t)), ("pressure", lambda: model.simulate(t, [1])),
                            ("start", lambda: model.inverse(t, t, start=-1)), ("slew_up", lambda: model.inverse(t, t, slew_up=0)),
@@ -299,7 +299,7 @@ class HostileArguments(unittest.TestCase):
                 call()
             self.assertEqual(caught.exception.argument, name)
 
-    def test_flags_mappings_and_encodings(self):
+    def test_invalid_flags_mappings_and_encodings_are_rejected(self):
         model, t, log = Model.load(MODEL), [0.0, 0.01], simulated()
         for name, call in (("held", lambda: model.simulate(t, t, held=np.array([True, False]))),
                            ("robust", lambda: identify(log, starts=1, robust="no")),
@@ -313,7 +313,7 @@ class HostileArguments(unittest.TestCase):
             with self.assertRaisesRegex(softgrip.InvalidArgument, f"^{name}: "):
                 call()
 
-    def test_read_only_and_strided_arrays(self):
+    def test_read_only_and_strided_arrays_are_accepted(self):
         model = Model.load(MODEL)
         t, pressure = sine()
         expected = model.simulate(t, pressure)
@@ -348,7 +348,7 @@ class Threads(unittest.TestCase):
         self.assertGreater(len(ticks), 3)  # if the fit held the GIL, the other thread would have added only one entry
                                            # to `ticks`
 
-    def test_fits_in_threads_give_one_result(self):
+    def test_concurrent_fits_give_equal_models(self):
         from concurrent.futures import ThreadPoolExecutor
         log = simulated()
         with ThreadPoolExecutor(3) as pool:

@@ -23,7 +23,7 @@ MODEL = SOURCE / "config/models/bench_twin.yaml"
 
 
 class Parts(unittest.TestCase):
-    def test_limits(self):
+    def test_commands_are_limited_and_invalid_limits_are_rejected(self):
         limits = Limits(pressure_min=5, pressure_max=60, slew_up=100, slew_down=50)
         self.assertEqual(limit(limits, 50, 10, 0.1).command, 20)
         self.assertEqual(limit(limits, 0, 10, 0.1).command, 5)
@@ -58,7 +58,7 @@ class Parts(unittest.TestCase):
         with self.assertRaisesRegex(softgrip.InvalidArgument, "^tick: "):
             Pid(PidSettings(), 0)
 
-    def test_a_reference_has_eight_segments(self):
+    def test_a_reference_accepts_at_most_eight_segments(self):
         reference = Reference(2)
         for _ in range(7):
             reference.ramp_to(4, 1).at(0.5)
@@ -73,7 +73,7 @@ class Parts(unittest.TestCase):
 
 
 class Boards(unittest.TestCase):
-    def test_a_simulated_board_is_a_finger(self):
+    def test_a_simulated_board_simulates_free_and_blocked_fingers(self):
         model = Model.load(MODEL)
         board = SimulatedBoard([SimulatedFinger(model), SimulatedFinger(model, SimulatedObject(4))])
         board.connect()
@@ -90,7 +90,7 @@ class Boards(unittest.TestCase):
         self.assertIn("simulated", board.describe())
         self.assertEqual(repr(pickle.loads(pickle.dumps(free))), repr(free))
 
-    def test_two_boards_have_one_result(self):
+    def test_two_boards_with_the_same_seed_give_equal_readings(self):
         model = Model.load(MODEL)
 
         def played():
@@ -103,7 +103,7 @@ class Boards(unittest.TestCase):
             return readings
         self.assertEqual(played(), played())
 
-    def test_a_controller_follows_a_reference_and_goes_on_without_readings(self):
+    def test_a_controller_follows_a_reference_and_vents_without_readings(self):
         model = Model.load(MODEL)
         board = SimulatedBoard([SimulatedFinger(model)])
         with self.assertRaisesRegex(softgrip.BusError, "^disconnected: "):
@@ -126,7 +126,7 @@ class Boards(unittest.TestCase):
             output = controller.tick(board.now + 10 + 0.005 * i, Reading(math.nan, validity="none_yet"))
         self.assertEqual(output.command, 0)
 
-    def test_what_is_refused(self):
+    def test_boards_and_controllers_reject_invalid_arguments(self):
         model = Model.load(MODEL)
         finger = SimulatedFinger(model)
         board = SimulatedBoard([finger])
@@ -153,7 +153,7 @@ class Boards(unittest.TestCase):
             with self.assertRaisesRegex(softgrip.InvalidArgument, f"^{name}: "):
                 call()
 
-    def test_an_error_of_a_bus_pickles(self):
+    def test_a_bus_error_can_be_pickled(self):
         error = pickle.loads(pickle.dumps(softgrip.BusError("timed_out", "no response")))
         self.assertEqual((error.status, error.detail, str(error)), ("timed_out", "no response", "timed_out: no response"))
 

@@ -25,7 +25,7 @@ class Examples(unittest.TestCase):
         self.ran.add(name)
         return done.stdout
 
-    def test_all(self):
+    def test_every_example_runs_with_the_expected_output(self):
         with tempfile.TemporaryDirectory() as folder:
             at = pathlib.Path(folder)
             self.assertIn("bench_twin: 0.00 to", self.run_example("simulate_finger.py", MODEL, at / "log.csv"))
@@ -81,7 +81,7 @@ class Examples(unittest.TestCase):
             finally:
                 daemon.terminate()
 
-    def test_lines(self):
+    def test_every_example_has_at_most_80_lines(self):
         for path in EXAMPLES.glob("*.py"):
             self.assertLessEqual(len(path.read_text().splitlines()), 80, path.name)
 

@@ -312,14 +312,14 @@ def main():
 
 
 class Fuzz(unittest.TestCase):
-    def test_only_exceptions_of_the_package(self):
+    def test_random_calls_raise_only_expected_exceptions(self):
         seed = int(os.environ.get("SOFTGRIP_FUZZ_SEED", "1"))
         done = subprocess.run([sys.executable, __file__, "--seed", str(seed), "--calls",
                                os.environ.get("SOFTGRIP_FUZZ_CALLS", "400")], capture_output=True, text=True)
         print(done.stdout)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_every_function_is_called(self):
+    def test_every_public_function_is_a_fuzz_target(self):
         with tempfile.TemporaryDirectory() as folder:
             called = set(World(folder).targets) | {"Identification.plot", "Validation.plot", "Prediction.plot", "Change.plot",
                                                    "Log.plot", "Diagnosis.plot", "FingerHealth.plot", "Health.plot",

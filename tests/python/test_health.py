@@ -50,7 +50,7 @@ class Health(unittest.TestCase):
         self.assertEqual(done.returncode, 6, done.stderr)
         return {key: value for key, value in json.loads(done.stdout).items() if key not in MADE}
 
-    def test_numbers_and_pages_are_those_of_the_command(self):
+    def test_report_scores_and_pages_equal_those_of_the_command(self):
         out, scores = self.at / "out", self.at / "scores.jsonl"
         expected = self.command("--out", out, "--false-alarm-points", "1000")
         found = health([self.recordings], self.baseline, false_alarm_points=1000, scores=scores)
@@ -62,7 +62,7 @@ class Health(unittest.TestCase):
         self.assertEqual({key: value for key, value in by_run.report.items() if key not in MADE},
                          self.command("--points", "run"))
 
-    def test_the_objects_say_what_the_json_says(self):
+    def test_the_result_objects_contain_the_values_of_the_report(self):
         self.assertTrue(self.found.alarm)
         for finger, said in zip(self.found.fingers, self.found.report["fingers"]):
             self.assertEqual((finger.finger, finger.state, finger.sentence, finger.unit, finger.grips, list(finger.advice)),
@@ -85,7 +85,7 @@ class Health(unittest.TestCase):
         self.assertEqual(loss.values[-1], loss.value)
         self.assertEqual(self.found.finger("right").state, "steady")
 
-    def test_a_result_pickles_and_shows_itself(self):
+    def test_a_result_can_be_pickled_and_plotted(self):
         copy = pickle.loads(pickle.dumps(self.found))
         self.assertEqual(copy.report, self.found.report)
         np.testing.assert_array_equal(copy.fingers[0].indicators[0].values, self.found.fingers[0].indicators[0].values)
@@ -104,7 +104,7 @@ class Health(unittest.TestCase):
                 bad()
         matplotlib.pyplot.close("all")
 
-    def test_scores_outlive_the_recordings_and_notes_end_alarms(self):
+    def test_scores_replace_deleted_recordings_and_notes_end_alarms(self):
         scores, few = self.at / "kept.jsonl", self.at / "few"
         shutil.copytree(self.recordings, few)
         health(few, self.baseline, scores=scores)
@@ -118,7 +118,7 @@ class Health(unittest.TestCase):
         self.assertFalse(after.alarm)
         self.assertNotEqual(after.finger("left").state, "alarm")
 
-    def test_progress_and_its_end(self):
+    def test_progress_is_reported_and_a_callback_exception_ends_the_call(self):
         stages = []
         health(self.recordings, self.baseline, progress=stages.append)
         self.assertEqual(stages, [f"recording {one} of 12" for one in range(1, 13)])
@@ -131,7 +131,7 @@ class Health(unittest.TestCase):
             health(self.recordings, self.baseline, progress=stop)
         self.assertEqual(stages, ["recording 1 of 12"])
 
-    def test_what_is_refused(self):
+    def test_invalid_files_and_arguments_raise_the_matching_exceptions(self):
         broken = self.at / "broken"
         shutil.copytree(self.baseline, broken)
         (broken / "model.yaml").write_text("changed\n")
@@ -150,7 +150,7 @@ class Health(unittest.TestCase):
             with self.assertRaisesRegex(kind, text):
                 call()
 
-    def test_the_example_of_a_night(self):
+    def test_the_nightly_example_reports_the_leak_and_writes_the_page(self):
         out = self.at / "night"
         done = subprocess.run([sys.executable, SOURCE / "examples/python/nightly_health.py", self.recordings, self.baseline,
                                out], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(BUILD / "python")})

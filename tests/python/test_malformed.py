@@ -87,7 +87,7 @@ class Malformed(unittest.TestCase):
         except softgrip.SoftgripError:
             return "error"
 
-    def test_every_place_of_every_line_may_hold_anything(self):
+    def test_no_replaced_value_raises_a_built_in_exception(self):
         heard = {}
         for command, (result, _) in RESULTS.items():
             lines = [{"id": 1, "ok": True, "result": result}, {"id": 4, "event": EVENT}]
@@ -102,7 +102,7 @@ class Malformed(unittest.TestCase):
                             heard[outcome] = heard.get(outcome, 0) + 1
         self.assertGreater(heard["malformed"], 1000, heard)
 
-    def test_damaged_bytes(self):
+    def test_damaged_bytes_raise_no_built_in_exception(self):
         whole = [json.dumps({"id": 1, "ok": True, "result": STATUS}).encode(),
                  json.dumps({"id": 4, "event": EVENT}).encode()]
         for seed in range(SEEDS):
@@ -117,7 +117,7 @@ class Malformed(unittest.TestCase):
             with self.subTest(seed=seed):
                 self.hear("status", bytes(text))
 
-    def test_what_is_no_json(self):
+    def test_invalid_json_raises_a_protocol_error(self):
         for text in (b"", b"\xff", b"[" * 100_000, b"{\"a\":" * 100_000, b"{\"event\":NaN}", b"{\"id\":1,\"ok\":Infinity}",
                      b"1" * 100_000):
             self.assertEqual(self.hear("status", text), "malformed", text[:20])
@@ -125,7 +125,7 @@ class Malformed(unittest.TestCase):
             said = json.dumps({"id": 1, "ok": True, "result": STATUS}).encode().replace(b"5.5", number)
             self.assertEqual(self.hear("status", said), "malformed", number[:20])
 
-    def test_the_error_says_where(self):
+    def test_the_error_states_the_path_of_the_malformed_value(self):
         for path, other, text in ((("channels", 0, "age_s"), "1", "status.channels[0].age_s is not a finite number"),
                                   (("state",), "dancing", "status.state is not one of starting, idle"),
                                   (("sequence", "step"), 1.5, "status.sequence.step is not a whole number"),

@@ -37,7 +37,7 @@ class Recordings(unittest.TestCase):
     def write(self, text):
         (self.folder / "run.csv").write_text(text)
 
-    def test_a_column_per_finger(self):
+    def test_a_recording_is_split_into_columns_per_finger(self):
         self.write(RUN)
         recording = Recording.read(self.folder)
         self.assertEqual(list(recording.channels), ["left", "right"])
@@ -47,22 +47,22 @@ class Recordings(unittest.TestCase):
         self.assertEqual(left["result"].tolist(), ["none", "holding"])
         self.assertNotIn("channel", left)
 
-    def test_what_is_no_path_is_refused(self):
+    def test_an_invalid_path_is_rejected(self):
         for call in (read_columns, read_report, Recording.read):
             for bad in (0, None, b"run.csv", "\ud800", "a\0b"):
                 with self.assertRaises(softgrip.InvalidArgument):
                     call(bad)
 
-    def test_a_line_that_a_kill_cut_off_is_left_out(self):
+    def test_an_incomplete_last_line_is_skipped(self):
         self.write(RUN + "1,left,1")
         self.assertEqual(len(read_columns(self.folder / "run.csv")["time_s"]), 4)
 
-    def test_a_line_that_does_not_fit_is_named(self):
+    def test_a_line_with_missing_cells_is_reported_with_its_number(self):
         self.write(RUN + "1,left,1\n1,right,1,2,none\n")
         with self.assertRaisesRegex(ValueError, "run.csv:6: 3 cells, the header has 5"):
             read_columns(self.folder / "run.csv")
 
-    def test_no_rows_and_no_header(self):
+    def test_a_csv_without_rows_is_accepted_and_without_header_rejected(self):
         self.write("time_s,displacement_mm\n")
         self.assertEqual({k: len(v) for k, v in read_columns(self.folder / "run.csv").items()},
                          {"time_s": 0, "displacement_mm": 0})
@@ -70,7 +70,7 @@ class Recordings(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no header"):
             read_columns(self.folder / "run.csv")
 
-    def test_a_log_of_one_finger(self):
+    def test_a_csv_without_a_channel_column_belongs_to_the_first_finger(self):
         self.write("time_s,displacement_mm\n0,1\n")
         self.assertEqual(Recording.read(self.folder).channels["left"]["displacement_mm"].tolist(), [1])
 
@@ -82,7 +82,7 @@ class Recordings(unittest.TestCase):
         np.testing.assert_array_equal(read["b"][0], [1])
         self.assertEqual((read["b"][1], read["c"], read["e"]), (["x"], {"d": []}, [True]))
 
-    def test_a_pipe_is_refused_and_not_waited_for(self):
+    def test_a_named_pipe_is_rejected_without_blocking(self):
         self.write(RUN)
         for name, read in (("run.csv", read_columns), ("run.json", read_report)):
             (self.folder / name).unlink()
@@ -99,7 +99,7 @@ class Recordings(unittest.TestCase):
             (self.folder / name).unlink()
             self.write(RUN)
 
-    def test_a_file_that_never_ends_is_refused(self):
+    def test_an_endless_or_too_large_file_is_rejected(self):
         with self.assertRaisesRegex(OSError, "not a regular file"):
             read_columns("/dev/zero")
         with open(self.folder / "run.csv", "w") as file:
@@ -110,7 +110,7 @@ class Recordings(unittest.TestCase):
     def malformed(self, text):
         return self.assertRaisesRegex(softgrip.MalformedFile, text)
 
-    def test_a_malformed_csv_is_a_malformed_file(self):
+    def test_a_malformed_csv_raises_malformed_file(self):
         path = self.folder / "run.csv"
         for content, text in ((b"time_s\n\xff\xfe\n", "not text in UTF-8"), (b"\n", "no header"),
                               (b"a,b,a\n1,2,3\n", "column 'a' exists more than once"),
@@ -121,7 +121,7 @@ class Recordings(unittest.TestCase):
             with self.subTest(text), self.malformed(text):
                 read_columns(path)
 
-    def test_a_malformed_report_is_a_malformed_file(self):
+    def test_a_malformed_report_raises_malformed_file(self):
         path = self.folder / "run.json"
         self.write(RUN)
         for content, text in ((b"", "not JSON"), (b"{", "not JSON"), (b"[" * 200_000, "not JSON"),
@@ -131,14 +131,14 @@ class Recordings(unittest.TestCase):
                 with self.subTest(text), self.malformed(text):
                     read()
 
-    def test_a_recording_without_the_names_of_its_fingers(self):
+    def test_a_recording_without_finger_names_raises_malformed_file(self):
         self.write("time_s,displacement_mm\n0,1\n")
         for about in ({}, {"channels": []}, {"channels": "left"}, {"channels": None}):
             (self.folder / "run.json").write_text(json.dumps(about))
             with self.subTest(about), self.malformed("lists no finger"):
                 Recording.read(self.folder)
 
-    def test_damaged_bytes(self):
+    def test_damaged_bytes_raise_only_malformed_file(self):
         for seed in range(300):
             chance = random.Random(seed)
             for name, whole in (("run.csv", RUN), ("run.json", json.dumps(ABOUT))):
@@ -149,7 +149,7 @@ class Recordings(unittest.TestCase):
             with self.subTest(seed=seed), contextlib.suppress(softgrip.MalformedFile):
                 Recording.read(self.folder)
 
-    def test_the_example_reads_it(self):
+    def test_the_example_program_summarises_a_recording(self):
         self.write(RUN)
         said = io.StringIO()
         argv, sys.argv = sys.argv, ["read_recording.py", str(self.folder)]

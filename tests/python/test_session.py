@@ -38,7 +38,7 @@ class Events:
 
 
 class Story(unittest.TestCase):
-    def test_what_came_and_went_is_still_found(self):
+    def test_a_result_that_has_passed_is_still_reported(self):
         told = Events()
         self.assertIsNone(told.reached(softgrip.Result.HOLDING))
         for code in ("HOLDING", "RELEASED"):
@@ -49,7 +49,7 @@ class Story(unittest.TestCase):
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
         self.assertFalse(told.session.starts)
 
-    def test_another_end_than_was_waited_for_is_an_error(self):
+    def test_an_unexpected_result_or_end_raises_grip_failed(self):
         told = Events()
         told.tell("overall_result", "NO PART")
         with self.assertRaises(softgrip.GripFailed) as raised:
@@ -60,19 +60,19 @@ class Story(unittest.TestCase):
             told.reached(softgrip.Result.HOLDING)
         self.assertEqual(raised.exception.end, softgrip.SequenceEnd.FAILED)
 
-    def test_a_failure_may_be_what_is_waited_for(self):
+    def test_a_failure_result_can_be_awaited_without_an_exception(self):
         told = Events()
         told.tell("overall_result", "PART LOST")
         self.assertEqual(told.reached(softgrip.Result.PART_LOST), softgrip.Result.PART_LOST)
 
-    def test_grips_of_others_do_not_count(self):
+    def test_events_of_other_requests_are_ignored(self):
         told = Events()
         told.tell("overall_result", "HOLDING", request=2)
         told.tell("sequence_finished", "done", request=2)
         self.assertIsNone(told.reached(softgrip.Result.HOLDING))
         self.assertEqual(list(told.session.starts.values()), [3])
 
-    def test_events_before_the_answer_to_the_start_count(self):
+    def test_events_before_the_reply_to_the_start_are_counted(self):
         told = Events(request=None)
         told.tell("overall_result", "HOLDING", request=7)
         told.reply(ok=True, result={"request": 7})
@@ -84,7 +84,7 @@ class Story(unittest.TestCase):
         self.assertFalse(told.session.starts)
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAILED)
 
-    def test_a_subscription_goes_on_where_it_was(self):
+    def test_a_subscription_resumes_and_a_restarted_daemon_ends_the_grip(self):
         told = Events()
         told.tell("overall_result", "HOLDING")
         self.assertEqual(told.session.subscription(), {"since": 1, "started_at": "first"})
@@ -94,7 +94,7 @@ class Story(unittest.TestCase):
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAULTED)
         self.assertFalse(told.session.starts, "what ran has ended with the daemon before")
 
-    def test_another_daemon_counts_its_requests_anew(self):
+    def test_equal_request_numbers_of_two_daemons_are_not_confused(self):
         told = Events()
         told.tell("overall_result", "HOLDING")
         told.session.subscribed({"since": 0, "started_at": "second"})
@@ -106,14 +106,14 @@ class Story(unittest.TestCase):
         self.assertFalse(told.session.ended())
         self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)
 
-    def test_results_of_one_finger_are_not_those_of_all(self):
+    def test_the_result_of_one_finger_is_not_the_overall_result(self):
         told = Events()
         told.tell("grip_result", "HOLDING")
         self.assertIsNone(told.reached(softgrip.Result.HOLDING))
 
 
 class Starts(unittest.TestCase):
-    def test_a_start_is_remembered_from_before_it_is_sent_until_it_cannot_run(self):
+    def test_a_start_is_recorded_even_if_the_wait_for_the_reply_ends(self):
         session = Session()
         number, sent = session.request("start", {"sequence": "pick"})
         (start_id,) = session.starts
@@ -124,7 +124,7 @@ class Starts(unittest.TestCase):
         self.assertEqual(session.grip, 5)
         self.assertFalse(session.replies)
 
-    def test_a_refused_start_does_not_run_and_one_without_an_answer_may(self):
+    def test_a_start_without_a_definite_refusal_counts_as_running(self):
         for error, runs in (({"code": "busy", "message": "m"}, False), ({"code": "no_answer", "message": "m"}, True),
                             ({"code": "refused", "message": "without its reason"}, True),
                             ({"code": "too_many_clients", "message": "m"}, True),
@@ -134,7 +134,7 @@ class Starts(unittest.TestCase):
             session.receive(line(id=number, ok=False, error=error))
             self.assertEqual(bool(session.starts), runs, error)
 
-    def test_a_start_that_is_refused_leaves_the_one_that_runs(self):
+    def test_a_refused_start_does_not_affect_the_running_start(self):
         told = Events()
         (own,) = told.session.starts
         number, _ = told.session.request("start", {"sequence": "pick"})
@@ -143,7 +143,7 @@ class Starts(unittest.TestCase):
         self.assertEqual(told.session.starts, {own: 3})
         self.assertEqual(told.session.grip, 3)
 
-    def test_no_two_starts_have_the_same_id_and_a_dry_run_has_none(self):
+    def test_each_start_has_a_unique_id_and_a_dry_run_has_none(self):
         session = Session()
         for _ in range(100):
             session.request("start", {"sequence": "pick"})
@@ -152,7 +152,7 @@ class Starts(unittest.TestCase):
         self.assertNotIn("start_id", json.loads(sent))
         self.assertEqual(len(session.starts), 100)
 
-    def test_an_older_daemon_starts_nothing(self):
+    def test_a_start_is_rejected_if_the_daemon_does_not_support_start_ids(self):
         session = Session()
         session.greeted(softgrip.Hello(1, "1.0", "first", "operate", ("start",), ("owner", "dry_run")))
         with self.assertRaisesRegex(softgrip.ProtocolError, "older"):
@@ -163,7 +163,7 @@ class Starts(unittest.TestCase):
 
 
 class Replies(unittest.TestCase):
-    def test_come_to_who_asked_in_any_order(self):
+    def test_replies_are_matched_to_their_requests_in_any_order(self):
         session = Session()
         first, first_line = session.request("status", {})
         second, _ = session.request("stop", {})
@@ -173,7 +173,7 @@ class Replies(unittest.TestCase):
         self.assertEqual(session.result_of(second), {"request": 9})
         self.assertEqual(session.result_of(first), {})
 
-    def test_errors_are_exceptions(self):
+    def test_each_error_code_raises_its_exception_class(self):
         problem = {"file": "a.yaml", "line": 3, "column": 5, "line_text": "x", "message": "no", "hint": ""}
         for error, kind in (
                 ({"code": "refused", "message": "m", "refusal": {"code": "R02", "name": "not_idle"}}, errors.Refused),
@@ -191,12 +191,12 @@ class Replies(unittest.TestCase):
             if kind is errors.SequenceRefused:
                 self.assertEqual(str(raised.exception), "m\na.yaml:3:5: no")
 
-    def test_what_is_no_line_of_the_daemon_is_an_error(self):
+    def test_a_line_that_is_not_a_json_object_raises_a_protocol_error(self):
         for text in (b"HTTP/1.1 400 Bad Request", b"[]", b""):
             with self.assertRaises(softgrip.ProtocolError):
                 Session().receive(text)
 
-    def test_what_cannot_be_said_in_json_is_not_sent(self):
+    def test_a_request_with_a_nan_parameter_is_rejected(self):
         with self.assertRaises(ValueError):
             Session().request("start", {"parameters": {"squeeze_kpa": float("nan")}})
 

@@ -70,7 +70,7 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-TEST(BoardMapFile, EverythingLandsWhereItBelongs) {
+TEST(BoardMapFile, EveryKeyIsReadIntoTheBoardMap) {
   const Result result = read(valid);
   ASSERT_TRUE(result.map.has_value()) << result.problems.format();
   const BoardMap& map = *result.map;
@@ -107,7 +107,7 @@ TEST(BoardMapFile, ShippedBoardsAreValid) {
   }
 }
 
-TEST(BoardMapFile, AdamHasTheRegistersOfItsManual) {
+TEST(BoardMapFile, TheAdamMapHasTheRegistersOfTheManual) {
   document::Problems problems;
   const auto map = load_board_map(boards + "adam-6024.yaml", problems);
   ASSERT_TRUE(map.has_value()) << problems.format();
@@ -143,7 +143,7 @@ TEST(BoardMapFile, AddressBaseAndWordOrderHaveNoDefault) {
   expect_one_problem({"address_base: 1", "address_base: 40001", "allowed is 0 to 1", "address_base: 40001"});
 }
 
-TEST(BoardMapFile, MistakesAreFoundWhereTheyStand) {
+TEST(BoardMapFile, EachMistakeIsReportedOnceWithTheLine) {
   const std::vector<Mistake> mistakes{
       {"fc23: false\n", "", "fc23", "name: test"},
       {"word_order: high_first", "word_order: big", "high_first", "big"},
@@ -183,7 +183,7 @@ TEST(BoardMapFile, Function23NeedsHoldingRegistersAndFunction16) {
   for (const document::Problem& problem : result.problems.list()) EXPECT_EQ(problem.at.line, 5);
 }
 
-TEST(BoardMapFile, ARequestMustHoldAWholeNumber) {
+TEST(BoardMapFile, ARequestMustContainAllRegistersOfANumber) {
   std::string text = changed("fc23: false", "fc23: false\nmax_registers: 1");
   text.replace(text.find("kind: uint16"), 12, "kind: int32");
   const Result result = read(text);
@@ -208,7 +208,7 @@ std::string without(std::string text, const std::string& from, const std::string
   return text.erase(begin, text.find(to) - begin);
 }
 
-TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
+TEST(BoardMapFile, AModuleCanHaveOnlyInputsOrOnlyOutputs) {
   std::string outputs_only = without(without(valid, "inputs:", "outputs:"), "input_status:", "read_back:");
   const Result outputs = read(outputs_only);
   ASSERT_TRUE(outputs.map.has_value()) << outputs.problems.format();
@@ -233,7 +233,7 @@ TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
   EXPECT_FALSE(read(without(without(valid, "inputs:", "outputs:"), "outputs:", "setup:")).map.has_value());
 }
 
-TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
+TEST(BoardMapFile, SeveralTripFlagsAndClearingWritesAreRead) {
   std::string text = valid;
   text.replace(text.find("{function: 1, address: 33}"), 26, "{function: 2, address: 33, count: 2}");
   text.replace(text.find("{function: 5, address: 33, value: 1}"), 36,
@@ -246,7 +246,7 @@ TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
       << "addresses start at 1 in the file and at 0 on the bus";
 }
 
-TEST(BoardMapFile, TheCountOfClientsIsARegister) {
+TEST(BoardMapFile, TheClientCountMustBeARegister) {
   const std::string clear = "clear: {function: 5, address: 33, value: 1}";
   const auto with = [&](const std::string& count) {
     return read(changed(clear, clear + "\n  clients: " + count));
@@ -262,7 +262,7 @@ TEST(BoardMapFile, TheCountOfClientsIsARegister) {
   EXPECT_FALSE(read(valid).map->watchdog.clients.has_value());
 }
 
-TEST(BoardMapFile, AWatchdogIsFedByReadersUnlessOnlyWritesFeedIt) {
+TEST(BoardMapFile, FedByReadingIsFalseIfOnlyWritesFeedTheWatchdog) {
   const auto fed = [](const std::string& by) {
     const Result result = read(changed("fed_by: functions\n  functions: [16]", "fed_by: " + by));
     EXPECT_TRUE(result.map.has_value()) << result.problems.format();
@@ -276,7 +276,7 @@ TEST(BoardMapFile, AWatchdogIsFedByReadersUnlessOnlyWritesFeedIt) {
   EXPECT_FALSE(none.fed_by_reading());
 }
 
-TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
+TEST(BoardMapFile, AHeartbeatRequiresTwoDifferentValues) {
   const auto with = [](const std::string& second) {
     return read(changed(
         "fed_by: functions\n  functions: [16]",
@@ -296,7 +296,7 @@ TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
 /// The watchdog of some couplers is reset only by certain function codes, which a mask selects. The reader
 /// computes this mask from the function codes in the file. It also checks that the mask includes the function
 /// code that writes the outputs.
-TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
+TEST(BoardMapFile, TheFunctionMaskIsComputedFromTheFunctionCodes) {
   std::string text = valid;
   text.replace(text.find("functions: [16]"), 15, "functions: [3, 16, 23]");
   text +=
@@ -310,7 +310,7 @@ TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
   EXPECT_FALSE(read(text + "  - {function: 6, address: 202, value: functions_33_to_48}\n").map.has_value());
 }
 
-TEST(BoardMapFile, TheWagoMapArmsItsWatchdogWithTheFunctionThatWrites) {
+TEST(BoardMapFile, TheWagoMapEnablesTheWatchdogForTheWriteFunction) {
   document::Problems problems;
   const auto map = load_board_map(boards + "wago-750-559.yaml", problems);
   ASSERT_TRUE(map.has_value()) << problems.format();
@@ -319,7 +319,7 @@ TEST(BoardMapFile, TheWagoMapArmsItsWatchdogWithTheFunctionThatWrites) {
   EXPECT_NE(mask & 1U << (map->outputs.registers.function - 1), 0U);
 }
 
-TEST(BoardMapFile, ThePressureGeneratorsZeroIsInTheMiddle) {
+TEST(BoardMapFile, TheFestoPgvaMapScalesZeroPressureToMidRange) {
   document::Problems problems;
   const auto map = load_board_map(boards + "festo-pgva.yaml", problems);
   ASSERT_TRUE(map.has_value()) << problems.format();
@@ -329,7 +329,7 @@ TEST(BoardMapFile, ThePressureGeneratorsZeroIsInTheMiddle) {
   EXPECT_NEAR(map->inputs.scaling.y_at(2460), (0.244 * 2460 - 500) / 10, 1e-3);
 }
 
-TEST(BoardMapFile, AllProblemsAtOnce) {
+TEST(BoardMapFile, AllProblemsAreReportedTogether) {
   const Result result = read("name: x\naddress_base: 7\ninputs: {function: 9}\nwatchdog: {kind: none}\n");
   EXPECT_FALSE(result.map.has_value());
   EXPECT_GT(result.problems.size(), 5U) << result.problems.format();

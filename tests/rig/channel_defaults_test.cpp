@@ -43,7 +43,7 @@ class ChannelDefaultsTest : public ::testing::Test {
   Problems problems;
 };
 
-TEST_F(ChannelDefaultsTest, AChannelHasWhatItLeavesOut) {
+TEST_F(ChannelDefaultsTest, OmittedKeysComeFromTheChannelDefaults) {
   const auto rig = read();
   ASSERT_TRUE(rig) << problems.format();
   for (std::size_t i = 0; i < 2; ++i) {
@@ -55,7 +55,7 @@ TEST_F(ChannelDefaultsTest, AChannelHasWhatItLeavesOut) {
   }
 }
 
-TEST_F(ChannelDefaultsTest, OneThermometerIsAllChannels) {
+TEST_F(ChannelDefaultsTest, OneTemperatureSensorServesAllChannels) {
   const std::string sensor =
       "  temperature_sensor: {input: 7, at_v: [0, 10], is_c: [-20, 80], valid_v: [0.1, 9.9]}\n";
   change("channel_defaults:", "    # the same\nchannel_defaults:");
@@ -75,7 +75,7 @@ TEST_F(ChannelDefaultsTest, OneThermometerIsAllChannels) {
   EXPECT_EQ(board.channels[1].plant.temperature_c, 20);
 }
 
-TEST_F(ChannelDefaultsTest, AThermometerIsNoOtherSensorsInput) {
+TEST_F(ChannelDefaultsTest, ATemperatureSensorCannotShareASensorInput) {
   change("    sensor: {input: 1}",
          "    sensor: {input: 1}\n"
          "    temperature_sensor: {input: 0, at_v: [0, 10], is_c: [-20, 80], valid_v: [0.1, 9.9]}");
@@ -83,7 +83,7 @@ TEST_F(ChannelDefaultsTest, AThermometerIsNoOtherSensorsInput) {
   EXPECT_NE(problems.format().find("the input 0 is already"), std::string::npos) << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, WhatAChannelSaysItselfCountsKeyByKey) {
+TEST_F(ChannelDefaultsTest, KeysOfAChannelOverrideSingleDefaults) {
   change("  - name: right\n", "  - name: right\n    feedforward: none\n    limits: {pressure_max_kpa: 40}\n");
   change("    sensor: {input: 1}", "    sensor: {input: 1, is_mm: [45, -5]}");
   const auto rig = read();
@@ -97,7 +97,7 @@ TEST_F(ChannelDefaultsTest, WhatAChannelSaysItselfCountsKeyByKey) {
   EXPECT_EQ(rig->settings.channels[0].limits.pressure_max_kpa, 60);
 }
 
-TEST_F(ChannelDefaultsTest, WhatIsWrongWithADefaultIsToldOnceWhereItStands) {
+TEST_F(ChannelDefaultsTest, AnErrorInADefaultIsReportedOnceAtTheLine) {
   change("kp_kpa_per_mm: 2.7", "kp_kpa_per_mm: fast");
   change("slew_up_kpa_per_s: 300", "slew_up_mpa_per_s: 0.3");
   change("at_v: [0, 10], is_mm: [-5, 45]", "at_v: [0, x], is_mm: [-5, 45]");
@@ -109,20 +109,20 @@ TEST_F(ChannelDefaultsTest, WhatIsWrongWithADefaultIsToldOnceWhereItStands) {
   EXPECT_NE(problems.format().find("`slew_up_kpa_per_s`"), std::string::npos) << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, AMissingKeyIsToldOnce) {
+TEST_F(ChannelDefaultsTest, AMissingSharedKeyIsReportedOnce) {
   change("    displacement_margin_mm: 2\n", "");
   EXPECT_FALSE(read());
   EXPECT_EQ(problems.size(), 1U) << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, WhatBothChannelsMissOfTheirOwnIsToldOfEach) {
+TEST_F(ChannelDefaultsTest, MissingOwnKeysAreReportedForEachChannel) {
   change("    valve: {output: 0}\n", "    valve: {}\n");
   change("    valve: {output: 1}\n", "    valve: {}\n");
   EXPECT_FALSE(read());
   EXPECT_EQ(problems.size(), 2U) << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, ADefaultThatIsNoMapWhereAChannelHasOne) {
+TEST_F(ChannelDefaultsTest, ADefaultThatMustBeAMapIsRefusedAsText) {
   change("  valve: {at_v: [0, 10], is_kpa: [0, 100], range_kpa: [0, 100], on_power_loss: vents}\n",
          "  valve: big\n");
   EXPECT_FALSE(read());
@@ -130,7 +130,7 @@ TEST_F(ChannelDefaultsTest, ADefaultThatIsNoMapWhereAChannelHasOne) {
       << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, WhatCannotBeSharedThere) {
+TEST_F(ChannelDefaultsTest, NameAndModelHealthAreRefusedAsDefaults) {
   change("channel_defaults:", "channel_defaults:\n  name: both\n  model_health: {noise_mm: 1}\n#");
   text.replace(text.find("\n#"), 2, "\n  # ");
   EXPECT_FALSE(read());
@@ -140,7 +140,7 @@ TEST_F(ChannelDefaultsTest, WhatCannotBeSharedThere) {
   EXPECT_EQ(problems.size(), 2U) << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, NoMapAtAll) {
+TEST_F(ChannelDefaultsTest, ChannelDefaultsMustBeAMap) {
   change("channel_defaults:                  # shared", "channel_defaults: none\nrest_of_it:   # shared");
   EXPECT_FALSE(read());
   EXPECT_NE(problems.format().find("`channel_defaults` must be a map of keys, found `none`"),
@@ -148,7 +148,7 @@ TEST_F(ChannelDefaultsTest, NoMapAtAll) {
       << problems.format();
 }
 
-TEST_F(ChannelDefaultsTest, AnOldFileWithoutThemIsReadAsBefore) {
+TEST_F(ChannelDefaultsTest, AFileWithoutChannelDefaultsIsRead) {
   const std::size_t from = text.find("channel_defaults:");
   const std::size_t to = text.find("channels:\n");
   std::string shared = text.substr(text.find('\n', from) + 1, to - text.find('\n', from) - 2);

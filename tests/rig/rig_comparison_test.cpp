@@ -44,11 +44,11 @@ class RigComparisonTest : public ::testing::Test {
   std::optional<RigFile> rig;
 };
 
-TEST_F(RigComparisonTest, TheShippedRigIsPlausible) {
+TEST_F(RigComparisonTest, TheShippedRigCausesNoWarning) {
   EXPECT_EQ(compare().format(), "");
 }
 
-TEST_F(RigComparisonTest, APressureAtWhichTheModelGoesFarBeyondItsDisplacement) {
+TEST_F(RigComparisonTest, WarnsIfMaximumPressureLeavesTheDisplacementRange) {
   change("displacement_max_mm: 35", "displacement_max_mm: 3");
   ASSERT_EQ(compare().warnings().size(), 2U) << problems.format();
   const document::Problem& first = problems.warnings()[0];
@@ -66,7 +66,7 @@ TEST_F(RigComparisonTest, APressureAtWhichTheModelGoesFarBeyondItsDisplacement) 
       << "the value that the warning advises must not cause another warning";
 }
 
-TEST_F(RigComparisonTest, APressureBelowRestAtWhichTheModelGoesFarBeyondItsDisplacement) {
+TEST_F(RigComparisonTest, WarnsIfMinimumPressureLeavesTheDisplacementRange) {
   change("pressure_min_kpa: 0", "pressure_min_kpa: -40");
   change("_kpa: \\[0, 100\\]", "_kpa: [-100, 100]");
   change("displacement_min_mm: -1", "displacement_min_mm: -2");
@@ -82,7 +82,7 @@ TEST_F(RigComparisonTest, APressureBelowRestAtWhichTheModelGoesFarBeyondItsDispl
       << "the value that the warning advises must not cause another warning";
 }
 
-TEST_F(RigComparisonTest, ASpeedThatNoFingerHas) {
+TEST_F(RigComparisonTest, WarnsAboutAMaximumSpeedThatNoFingerReaches) {
   change("max_speed_mm_per_s: 500", "max_speed_mm_per_s: 50000");
   ASSERT_EQ(compare().warnings().size(), 2U) << problems.format();
   const document::Problem& first = problems.warnings()[0];
@@ -94,7 +94,7 @@ TEST_F(RigComparisonTest, ASpeedThatNoFingerHas) {
   EXPECT_EQ(compare().format(), "");
 }
 
-TEST_F(RigComparisonTest, ABurstLineThatNobodyWouldSee) {
+TEST_F(RigComparisonTest, WarnsIfAChannelCannotDetectABurstLine) {
   change("    pressure_monitor: \\{input: 5\\}\n", "");
   change("\n  pressure_monitor: .*", "");
   change("    pressure_monitor: \\{input: 4\\}\n",
@@ -107,13 +107,13 @@ TEST_F(RigComparisonTest, ABurstLineThatNobodyWouldSee) {
   EXPECT_FALSE(sees_burst_line(*rig, 1));
 }
 
-TEST_F(RigComparisonTest, AMonitorThatIsNotComparedSeesNothing) {
+TEST_F(RigComparisonTest, WarnsIfThePressureMonitorIsNotEvaluated) {
   change("pressure_cycles: 20 ", "pressure_cycles: 0 ");
   ASSERT_EQ(compare().warnings().size(), 2U) << problems.format();
   EXPECT_NE(problems.warnings()[0].hint.find("pressure_cycles: 20"), std::string::npos);
 }
 
-TEST_F(RigComparisonTest, ARecipeThatReliesOnIt) {
+TEST_F(RigComparisonTest, WarnsAboutAGripThatCannotDetectABurstLine) {
   change("pressure_cycles: 20 ", "pressure_cycles: 0 ");
   compare();
   document::Problems none;

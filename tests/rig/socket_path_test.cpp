@@ -22,7 +22,7 @@ class SocketPath : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("socket_path_" + std::to_string(::getpid()));
 };
 
-TEST_F(SocketPath, IsReadFromARigFileWhateverElseIsWrongWithIt) {
+TEST_F(SocketPath, IsReadFromARigFileWithOtherErrors) {
   document::Problems problems;
   EXPECT_EQ(socket_path_of(write("nam: x\nsocket: {path: /run/x.sock}\n"), problems), "/run/x.sock");
   EXPECT_EQ(socket_path_of(write("socket: {path: ../x.sock}\n"), problems),
@@ -30,7 +30,7 @@ TEST_F(SocketPath, IsReadFromARigFileWhateverElseIsWrongWithIt) {
   EXPECT_TRUE(problems.empty()) << problems.format();
 }
 
-TEST_F(SocketPath, WhereThereIsNoneIsAProblem) {
+TEST_F(SocketPath, AMissingPathIsReportedAsAProblem) {
   document::Problems problems;
   EXPECT_FALSE(socket_path_of(write("name: x\n"), problems));
   EXPECT_NE(problems.format().find("does not name a socket"), std::string::npos);

@@ -24,7 +24,7 @@ std::vector<InputFile> elsewhere(std::vector<InputFile> files) {
   return files;
 }
 
-TEST(StoredRig, NeedsNothingOfTheDisk) {
+TEST(StoredRig, IsReadWithoutTheFilesOnDisk) {
   for (const char* name : {"rig_tcp.yaml", "rig_rtu.yaml", "rig_iio.yaml", "rig_service.yaml", "rig.yaml"}) {
     const RigFile rig = shipped(name);
     document::Problems problems;
@@ -39,7 +39,7 @@ TEST(StoredRig, NeedsNothingOfTheDisk) {
   }
 }
 
-TEST(StoredRig, AFileThatWasNotStoredIsAProblemThoughItIsOnTheDisk) {
+TEST(StoredRig, AnUnstoredFileIsAProblemEvenIfPresentOnDisk) {
   std::vector<InputFile> files = shipped("rig_tcp.yaml").inputs;
   ASSERT_GT(files.size(), 1U);
   ASSERT_TRUE(std::filesystem::exists(files.back().path));

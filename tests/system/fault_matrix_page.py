@@ -7,19 +7,16 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import results_page
 
 EXPLANATION = """\
-The table shows the result of every fault (row) in every phase of a grip (column). The table also shows how many cycles of the control loop passed until the fault was detected, and what the board did with its outputs.
+The [table](#the-table) shows the result of every fault (row) in every phase of a grip (column). A cell also states the number of cycles of the control loop until the detection of the fault, and the action of the outputs.
 `tests/system/fault_matrix.yaml` defines the required result of each cell. If the measured result of a cell differs from the required result, the cell is marked **WRONG** and `scripts/fault_matrix.sh` fails. The test `system.test_fault_matrix` repeats some of the cells in every test run.
 
-- **F103 20/22 vent**: the daemon latched fault F103 20 cycles after the first effect of the fault, and vented the outputs. The thresholds below allow 22 cycles.
-*board*: the watchdog of the board vented the outputs, because no write was possible. A cycle is a tick in the recording. The cycles are counted from the first affected message to the tick in which the fault latched.
+- **F103 20/22 vent** (example): the daemon latched fault F103 20 cycles after the first effect of the fault, and vented the outputs. The [thresholds](#thresholds) permit 22 cycles until the detection of F103. The word *board* in a cell means that the watchdog of the board vented the outputs, because no write was possible. A cycle is a tick in the recording. The cycles are counted from the first affected message to the tick in which the fault latched.
 - **waits**: the daemon stays in the state `starting` with its outputs at rest, and becomes idle when the cause is gone.
-- **ridden**: no fault is raised, and the grip has its normal result.
-- **unseen**: the software cannot detect the fault. The note gives the reason and the remaining protection.
-- *spoiled*: a write does not arrive unchanged, so the safe action of the daemon has no effect. Only protections outside the software are effective (for example a relief valve, or a dump valve in the emergency-stop circuit).
+- **ridden**: no fault latches, and the grip has its normal result.
+- **unseen**: the software cannot detect the fault. The note of the cell states the reason and the remaining protection.
+- *spoiled*: the board does not output the written values, so the safe action of the daemon has no effect. Only protections outside the software are effective (for example a relief valve, or a dump valve in the emergency-stop circuit).
 
-In every cell, the following conditions are also checked. After the fault, no output moved away from rest. When the cause is gone, the
-fault can be acknowledged, and the acknowledgement causes no motion. The recordings contain every tick that the loop executed,
-and `run.json` contains the fault.
+The test of every cell also checks the following conditions. After the fault, no output moved away from its rest pressure. When the cause is gone, the fault can be acknowledged, and the acknowledgement causes no motion. The recordings contain every tick that the control loop executed, and `run.json` contains the fault.
 """
 
 
@@ -53,24 +50,24 @@ def summary(results):
     reactions = [r["measured"] for r in results if "cycles" in r["measured"]]
     worst = max(reactions, key=lambda m: m["cycles"] / m["bound"])
     tried = sum(r["attempts"] > 1 for r in results)
-    return (f"{len(results)} cells: " + ", ".join(f"{n} {ends}" for ends, n in sorted(count.items())) +
-            f". {len(reactions)} reactions were measured; the reaction that was nearest to its limit took {worst['cycles']} of the {worst['bound']} "
-            f"allowed cycles. {tried} cells were repeated because the machine had paused during the first run.")
+    return (f"The {len(results)} cells have these results: " + ", ".join(f"{n} {ends}" for ends, n in sorted(count.items())) +
+            f". {len(reactions)} reaction times were measured; the reaction time nearest to its limit was {worst['cycles']} of the {worst['bound']} "
+            f"permitted cycles. The tests of {tried} cells were repeated because the machine had paused during the first test.")
 
 
 def meaning(results):
     wrong, unseen = (sum(bool(kind(r)) for r in results) for kind in (
         lambda r: r["wrong"], lambda r: not r["wrong"] and r["expected"]["ends"] == "unseen"))
-    return (f"{len(results) - wrong} of {len(results)} cells have the required result, but in {unseen} of these cells the software cannot "
-            f"detect the fault. For each of the {unseen} cells, a note names the remaining protection.")
+    return (f"In {len(results) - wrong} of {len(results)} combinations of a fault and a phase of a grip (cells), softgripd has the required result. "
+            f"In {unseen} of the {len(results)} cells, the software cannot detect the fault, and a note names the remaining protection.")
 
 
 def page(table, results, build):
     notes = []
     lines = [*results_page.head("Fault matrix", meaning(results), results_page.version_of(build), "scripts/fault_matrix.sh --page",
                                 "real daemon and emulated board over real sockets"), EXPLANATION, summary(results), "", "## Thresholds", "",
-             "The tests use the rig file `config/rig_tcp.yaml` with the values in this table. The allowed numbers of cycles are computed from these values:", "",
-             "| key | |", "|---|---|"]
+             "The tests use the rig file `config/rig_tcp.yaml` with the values in this table. The permitted numbers of cycles are computed from these values:", "",
+             "| key of the rig file | value |", "|---|---|"]
     lines += [f"| `{key}` | {value} |" for key, value in table.rig.items()]
     lines += ["", "## The table", "", "| class | fault | " + " | ".join(table.phases) + " |",
               "|---|---|" + "---|" * len(table.phases)]

@@ -874,17 +874,18 @@ def outcome(file, folder):
 
 HEAD = """# External files
 
-This page shows how `softgrip import` converts external files. This command writes the page:
+This page shows how `softgrip import` converts external files in many formats. The following script writes the page:
 
 ```
 $ tests/system/foreign_files.py --page
 ```
 
-This script writes every file, imports it, and compares each imported value with the value that it wrote. An import passes if each
-deviation is at most 1e-9 of the largest value of its column. A file that must be refused passes if the import states the reason and
-writes no output. "As they are" means that all samples are equal to the written samples in this sense. If the column "options" is
-empty, the import used the columns that it had proposed from names and units (`--yes`). The test `system.test_import` repeats the
-imports and compares them with this page. [How to import](../how-to/import.md) contains the rules.
+The script writes every file of the table, imports the file, and compares each imported value with the written value. The
+result "as they are" means that each imported value deviates from its written value by at most 1e-9 of the largest value
+in the column. The result "refused" means that the import states the reason and writes no output. If the column "options"
+of the table is empty, the import used the columns that `import --yes` proposes from names and units. The test
+`system.test_import` repeats all imports and compares their results with this page. [How to import](../how-to/import.md)
+contains the rules of the import.
 
 | file | content | options | result | messages |
 |---|---|---|---|---|

@@ -20,7 +20,7 @@ def block_of(path):
 
 
 class AddABoard(bench.BenchTest):
-    def test_a_map_is_all_that_a_modbus_board_needs(self):
+    def test_a_new_modbus_board_needs_only_a_board_map(self):
         path = "config/boards/example-4x2.yaml"
         self.write(path, block_of(path))
         example = ((r"map: .*", "map: boards/example-4x2.yaml"),
@@ -36,7 +36,7 @@ class AddABoard(bench.BenchTest):
         emulator.end()
         bench.wait_for("the loss to be seen", lambda: not daemon.status()["bus"]["connected"])
 
-    def test_the_driver_of_the_page_keeps_to_the_interface(self):
+    def test_the_example_driver_of_the_page_compiles(self):
         compiler = next(filter(None, map(shutil.which, ("c++", "g++", "clang++"))), None)
         if compiler is None:
             self.skipTest("no compiler is installed")
@@ -45,7 +45,7 @@ class AddABoard(bench.BenchTest):
         subprocess.run([compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", bench.SOURCE, path],
                        check=True, timeout=bench.PATIENCE_S)
 
-    def test_every_place_that_the_page_names_is_there(self):
+    def test_every_file_named_by_the_page_exists(self):
         for path in re.findall(r"`((?:[\w.-]+/)+[\w-]+\.\w+)`", PAGE.read_text()):
             if "example" not in pathlib.Path(path).name:
                 self.assertTrue((bench.SOURCE / path).exists(), path)

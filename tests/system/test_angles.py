@@ -75,7 +75,7 @@ class Angles(bench.BenchTest):
         for text in (page, *texts):
             self.assertRegex(text, r"\d deg\b")
 
-    def test_identify_gives_the_numbers_of_a_log_in_mm(self):
+    def test_identify_in_degrees_gives_the_same_numbers_as_in_mm(self):
         said = {unit: self.identified(unit, "--figures", f"{unit}/figures") for unit in ("mm", "deg")}
         found = {unit: json.loads(self.read(f"{unit}/out/identify.json")) for unit in said}
         self.assertEqual(without_times(found["deg"]), without_times(found["mm"]))
@@ -91,14 +91,14 @@ class Angles(bench.BenchTest):
         self.assertTrue(any("[deg]" in head for head in heads), heads)
         self.assertFalse(any("[mm]" in head for head in heads), heads)
 
-    def test_a_chosen_structure_is_in_degrees_too(self):
+    def test_identify_with_a_chosen_structure_reports_degrees(self):
         for unit in ("mm", "deg"):
             said = self.identified(unit, "--structure", "bouc_wen")
         self.assertEqual(self.parameters("deg"), self.parameters("mm"))
         self.assert_in_degrees("deg/out", "identify.json", said)
         self.assertIn("\noutput_unit: deg\n", self.read("deg/out/model.yaml"))
 
-    def test_radians_give_the_model_of_degrees(self):
+    def test_a_log_in_radians_gives_the_same_model_as_in_degrees(self):
         for unit in ("deg", "rad"):
             self.identified(unit)
         other = self.parameters("rad")
@@ -106,7 +106,7 @@ class Angles(bench.BenchTest):
             self.assertAlmostEqual(other[name] / value, 1, delta=1e-6, msg=name)
         self.assertIn("\noutput_unit: deg\n", self.read("rad/out/model.yaml"))
 
-    def test_validate_and_diagnose_speak_of_degrees(self):
+    def test_validate_and_diagnose_in_degrees_equal_those_in_mm(self):
         found = {}
         for unit in ("mm", "deg"):
             logs = [f"{unit}/tp1.csv", f"{unit}/sp2.csv"]
@@ -122,7 +122,7 @@ class Angles(bench.BenchTest):
         self.assert_in_degrees("deg/diagnosed", "diagnosis.json", diagnosed)
         self.assertIn("\noutput_unit: deg\n", self.read("deg/diagnosed/model.yaml"))
 
-    def test_a_change_is_in_degrees(self):
+    def test_a_diagnosed_change_is_reported_in_degrees(self):
         self.rename("tp1.csv", "deg/later.csv", "angle_deg", 0.8)
         said = self.softgrip("diagnose", "--model", self.in_degrees(TWIN), "--healthy", "deg/tp1.csv", "deg/sp2.csv", "--data",
                              "deg/later.csv", "--explain", "--out", "deg/changed", timeout_s=170).stdout
@@ -132,7 +132,7 @@ class Angles(bench.BenchTest):
         self.write(name, header + "\n" + "".join(f"{factor * x!r},{factor * (x + 0.03 * x * (1 - x / 20))!r}\n"
                                                  for x in [*range(0, 28, 3), *range(27, -1, -3)]))
 
-    def test_a_gauge_is_in_the_unit_of_the_logs(self):
+    def test_the_gauge_check_is_reported_in_the_unit_of_the_logs(self):
         found = {}
         for unit, column in (("mm", "displacement_mm"), ("deg", "angle_deg")):
             self.gauge(f"{unit}/gauge.csv", f"gauge_{unit},{column}")
@@ -145,7 +145,7 @@ class Angles(bench.BenchTest):
         self.assertTrue("position on the gauge in degrees" in self.read("deg/diagnosed/report.html"))
         self.assert_in_degrees("deg/diagnosed", "diagnosis.json", said)
 
-    def test_a_baseline_and_the_health_of_its_finger_are_in_degrees(self):
+    def test_baseline_and_health_in_degrees_equal_those_in_mm(self):
         bases, healths = {}, {}
         for unit in ("mm", "deg"):
             column = {"mm": "displacement_mm", "deg": "angle_deg"}[unit]
@@ -174,7 +174,7 @@ class Angles(bench.BenchTest):
             self.assertEqual(re.findall(r".{0,40}(?: mm\b|\[mm).{0,20}", text), [])
             self.assertRegex(text, r"\d deg\b")
 
-    def test_a_recording_in_another_unit_than_its_baseline_is_left_out(self):
+    def test_health_rejects_a_recording_in_another_unit_than_the_baseline(self):
         self.softgrip("baseline", "--data", "deg/tp1.csv", "--model", self.in_degrees(TWIN), "--out", "base")
         done = self.softgrip("health", "mm/tp1.csv", "--baseline", "base", expect=3)
         self.assertIn("the readings of the recording are in mm, but the baseline of `` is in deg", done.stderr)
@@ -204,7 +204,7 @@ class Angles(bench.BenchTest):
         self.assertIn(f"{TWIN} is in mm, but the logs are in deg", done.stderr)
         self.assertFalse((self.folder / "out").exists())
 
-    def test_no_rig_takes_a_model_in_degrees(self):
+    def test_a_rig_with_a_model_in_degrees_is_rejected(self):
         why = "the output unit of the model is deg, but a rig measures and controls in mm"
         self.assertIn(f":1:1: {why}", self.softgrip("check", self.in_degrees(TWIN), expect=3).stderr)
         self.write(TWIN, "output_unit: deg\n" + self.read(TWIN))
@@ -225,7 +225,7 @@ class Angles(bench.BenchTest):
         self.softgrip("export", model, "--rate-hz", "100", "--out", "finger.c")
         self.assertIn("Returns the bending angle [deg]", self.read("finger.c"))
 
-    def test_a_foreign_angle_is_imported_in_degrees(self):
+    def test_imported_angles_are_converted_to_degrees(self):
         with open(self.folder / "tp1.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         wanted = [float(row["displacement_mm"]) for row in rows]

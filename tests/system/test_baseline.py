@@ -66,7 +66,7 @@ class Baseline(bench.BenchTest):
         self.softgrip("diagnose", "--baseline", "base", "--data", *logs, "--out", "found", timeout_s=ENDS_WITHIN_S)
         return json.loads((self.folder / "found/diagnosis.json").read_text())
 
-    def test_a_simulated_rig_is_commissioned_and_a_change_found(self):
+    def test_a_gain_change_since_the_baseline_of_a_simulated_rig_is_found(self):
         done = self.commissioned(self.simulated(), *SHORT)
         self.assertRegex(done.stdout, r"The second run: Unchanged.*Residual of the baseline model: 0\.\d+ mm on the first run")
         about = self.check_whole(2)
@@ -93,7 +93,7 @@ class Baseline(bench.BenchTest):
         log.write_text(log.read_text() + "\n")
         self.assertIn("second_2.csv", self.softgrip("baseline", "--check", "base", expect=3).stderr)
 
-    def test_it_stays_within_the_limits_of_the_rig_file(self):
+    def test_commissioning_stays_within_the_limits_of_the_rig_file(self):
         for old, new, most_kpa, most_mm in (
                 ("pressure_max_kpa: 60", "pressure_max_kpa: 22", 22, 35),
                 ("displacement_max_mm: 35", "displacement_max_mm: 11", 60, 11)):
@@ -109,12 +109,12 @@ class Baseline(bench.BenchTest):
                 for path in (self.folder / "base").iterdir():
                     path.unlink()
 
-    def test_a_contact_in_the_way_ends_it_and_leaves_nothing(self):
+    def test_a_contact_ends_the_commissioning_and_no_file_remains(self):
         done = self.commissioned(self.folder / "config/rig.yaml", expect=6)
         self.assertRegex(done.stderr, r"the finger touched an object: the finger stopped at 1[2-5](\.\d)? mm")
         self.check_nothing_is_left()
 
-    def test_a_finger_that_does_not_move_ends_it(self):
+    def test_a_finger_that_hardly_moves_ends_the_commissioning(self):
         still = (self.folder / "config/models/bench_twin.yaml").read_text()
         plant = ("      left:\n        model: models/bench_twin.yaml", "      left:\n        model: models/still.yaml")
         self.write("config/models/still.yaml", re.sub(
@@ -123,7 +123,7 @@ class Baseline(bench.BenchTest):
         self.assertIn("the finger hardly moved", done.stderr)
         self.check_nothing_is_left()
 
-    def test_what_cannot_be_done_is_refused_before_anything_moves(self):
+    def test_invalid_arguments_are_rejected_before_any_motion(self):
         free = self.simulated()
         for arguments, code, why in (
                 (["--rig", free, "--out", "base"], 2, "the rig has 2 channels"),
@@ -142,7 +142,7 @@ class Baseline(bench.BenchTest):
         self.assertIn("never goes down to 0 kPa", self.commissioned(upper, expect=2).stderr)
         self.check_nothing_is_left()
 
-    def test_over_modbus_in_real_time_it_is_commissioned_too(self):
+    def test_a_modbus_rig_is_commissioned_in_real_time(self):
         self.creep_faster()
         board = self.emulator("--model", self.folder / "config/models/bench_twin.yaml")
         done = self.commissioned(self.rig(board.port), "--experiments", "sharp_steps", "--rest-s", "5", "--yes",
@@ -156,7 +156,7 @@ class Baseline(bench.BenchTest):
         self.assertLess(check["second_run_rms_mm"], 2 * check["healthy_heldout_rms_mm"])
         self.assertEqual((about["rig"]["channel"], about["rig"]["simulated"]), ("left", False))
 
-    def test_who_is_not_allowed_moves_nothing(self):
+    def test_the_rig_does_not_move_without_consent(self):
         board = self.emulator()
         rig = self.rig(board.port)
         self.assertIn("allow the motion with --yes", self.commissioned(rig, expect=2).stderr)
@@ -172,7 +172,7 @@ class Baseline(bench.BenchTest):
         self.assertEqual(board.commands_kpa(), [0, 0])
         self.check_nothing_is_left()
 
-    def test_a_board_that_somebody_drives_is_refused(self):
+    def test_a_board_that_softgripd_uses_is_rejected(self):
         board = self.emulator()
         rig = self.rig(board.port)
         softgripd = self.daemon(rig)
@@ -182,7 +182,7 @@ class Baseline(bench.BenchTest):
         self.assertIn(str(softgripd.child.pid), self.commissioned(other, "--yes", expect=5).stderr)
         self.check_nothing_is_left()
 
-    def test_ctrl_c_vents_and_leaves_nothing(self):
+    def test_ctrl_c_vents_the_rig_and_no_file_remains(self):
         board = self.emulator()
         child = bench.Process("softgrip", [bench.SOFTGRIP, "baseline", "--rig", self.rig(board.port), "--rig-channel",
                                            "left", "--out", "base", "--yes"], self.folder)
@@ -195,7 +195,7 @@ class Baseline(bench.BenchTest):
         self.assertEqual(board.commands_kpa(), [0, 0])
         self.check_nothing_is_left()
 
-    def test_a_contact_over_modbus_is_noticed_too(self):
+    def test_a_contact_on_a_modbus_rig_ends_the_commissioning(self):
         board = self.emulator("--object", "stone")
         done = self.commissioned(self.rig(board.port), *SHORT, "--rest-s", "1", "--yes", expect=6)
         self.assertIn("the finger touched an object", done.stderr)

@@ -41,7 +41,7 @@ class BoardHabits(bench.BenchTest):
     def kinds(self, daemon):
         return [event["kind"] for event in daemon.events()]
 
-    def test_a_connection_that_is_closed_at_once_is_none(self):
+    def test_a_connection_closed_at_once_does_not_count_as_connected(self):
         emulator = self.habit("disconnect")
         rig = self.rig(emulator.port)
         finding = next(f for f in json.loads(self.softgrip("doctor", "--rig", rig, "--json", expect=6).stdout)["findings"]
@@ -64,7 +64,7 @@ class BoardHabits(bench.BenchTest):
         self.assertIn("bus_connected", self.kinds(daemon))
         self.assertIsNone(daemon.status()["bus"]["failure_kind"])
 
-    def test_a_board_that_ignores_what_comes_first_needs_its_settle_time(self):
+    def test_a_board_that_ignores_early_requests_needs_settle_s(self):
         emulator = self.habit("settling, settle_s: 0.6")
         changes = [(r"connect_deadline_s: [\d.]+", "connect_deadline_s: 3")]
         self.assertNotIn("settle_s", self.rig(emulator.port, changes).read_text())
@@ -77,7 +77,7 @@ class BoardHabits(bench.BenchTest):
         daemon.wait_for_state("idle")
         emulator.ask("clear it")
 
-    def test_a_silent_board_is_used_with_its_first_answers(self):
+    def test_a_silent_board_is_used_within_0_5_s_of_its_first_response(self):
         emulator = self.habit("lost_request")
         daemon = self.daemon(self.rig(emulator.port))
         bench.wait_for("attempts", lambda: daemon.status()["bus"]["attempts"] > 2, patience_s=30)
@@ -122,20 +122,20 @@ class BoardHabits(bench.BenchTest):
         self.assertIn(text, finding["text"])
         self.assertIn(advice, finding["advice"])
 
-    def test_the_doctor_says_the_word_order(self):
+    def test_doctor_suggests_the_correct_word_order(self):
         plain = self.board("plain")
         for order in ("low_first", "high_first_bytes_swapped", "low_first_bytes_swapped"):
             with self.subTest(order):
                 other = self.board(order, ("word_order: high_first", f"word_order: {order}"))
                 self.assert_says(self.examined(plain, other), "are implausible with the word order `high_first`", f"word_order: {order}")
 
-    def test_the_doctor_says_addresses_that_are_off_by_one(self):
+    def test_doctor_reports_addresses_that_are_off_by_one(self):
         inputs = "function: 3\n  address: 0\n  count: 8"
         at = {n: self.board(f"at_{n}", (inputs, inputs.replace("0", str(n)))) for n in (1, 400, 401)}
         self.assert_says(self.examined(at[1], self.board("plain")), "One register lower", "address_base: 1")
         self.assert_says(self.examined(at[400], at[401]), "accepts the request if it begins one register higher, at 401", "by one")
 
-    def test_the_doctor_says_the_other_read_function(self):
+    def test_doctor_suggests_the_read_function_that_the_board_accepts(self):
         inputs, apart = "function: 3\n  address: 0\n  count: 8", ("fc23: true", "fc23: false")
         of = {3: self.board("of_3", apart), 4: self.board("of_4", apart, (inputs, inputs.replace("3", "4", 1)))}
         plain = self.board("plain")
@@ -156,7 +156,7 @@ class BoardHabits(bench.BenchTest):
                                      f"write `function: {other}` for `inputs` in the board map")
         self.assert_says(self.examined(plain, plain, in_front=only(4, 2)), "function 4 is accepted", "`inputs` and `fc23: false`")
 
-    def test_the_doctor_says_what_an_exception_means(self):
+    def test_doctor_explains_modbus_exceptions(self):
         plain = self.board("plain")
         self.assert_says(self.examined(plain, plain, "--unit", "3"), "(exception 11); unit id 3 responds", "unit: 3")
         self.assert_says(self.examined(plain, plain, fault="few_registers, most: 8"), "(exception 3); the board accepts a request of 8 registers",
@@ -164,13 +164,13 @@ class BoardHabits(bench.BenchTest):
         self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 1"), "(exception 1)", "with the manual")
         self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 4"), "(exception 4)", "internal failure")
 
-    def test_the_doctor_says_what_a_gateway_does(self):
+    def test_doctor_reports_another_framing_and_wrong_transaction_ids(self):
         plain = self.board("plain")
         self.assert_says(self.examined(plain, plain, "--rtu-over-tcp"), "the other framing", "framing: rtu")
         self.assert_says(self.examined(plain, plain, fault="wrong_transaction"), "responses of the board are correct",
                          "accept_no_transaction_id")
 
-    def test_a_rig_that_says_its_habits_works(self):
+    def test_a_rig_file_that_describes_the_unusual_behaviour_works(self):
         plain = self.board("plain")
         few = self.board("few", ("fc23: true", "fc23: true\nmax_registers: 8"))
         risk = 'accept_no_transaction_id: "a late answer may pass for the answer to a later request"'
@@ -189,7 +189,7 @@ class BoardHabits(bench.BenchTest):
     def check(self, session):
         return self.softgrip("check", self.described(1502, self.board("plain"), session), expect=3).stderr
 
-    def test_what_cannot_be_is_refused_where_it_stands(self):
+    def test_invalid_session_settings_are_rejected_with_their_line(self):
         for session, message in (
                 ("settle_s: 0.5", "`settle_s` is not below `connect_deadline_s` (0.5 s)"),
                 ("settle_s: -1", "`settle_s`"),

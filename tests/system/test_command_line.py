@@ -16,7 +16,7 @@ class Offline(bench.BenchTest):
     def simulate(self, *arguments, model="bench_twin", expect=0):
         return self.softgrip("simulate", "--model", f"config/models/{model}.yaml", *arguments, expect=expect)
 
-    def test_simulate_repeats_its_bytes(self):
+    def test_simulate_with_the_same_seed_writes_the_same_bytes(self):
         for name, seed in (("a", 7), ("b", 7), ("c", 8)):
             self.simulate("--input", "tp1", "--out", f"{name}.csv", "--noise-mm", "0.05", "--seed", seed)
         a, b, c = ((self.folder / f"{name}.csv").read_bytes() for name in "abc")
@@ -24,14 +24,14 @@ class Offline(bench.BenchTest):
         self.assertNotEqual(a, c)
         self.assertTrue(a.startswith(b"time_s,pressure_command_kpa,displacement_mm\n0,0,"))
 
-    def test_simulate_follows_a_logs_own_times(self):
+    def test_simulate_keeps_the_times_of_the_input_log(self):
         self.write("log.csv", "time_s,pressure_command_kpa\n0,0\n0.5,20\n0.7,20\n4,0\n")
         done = self.simulate("--input", "log.csv", "--out", "-")
         rows = [line.split(",") for line in done.stdout.splitlines()]
         self.assertEqual([row[0] for row in rows], ["time_s", "0", "0.5", "0.7", "4"])
         self.assertGreater(float(rows[3][2]), 1)
 
-    def test_simulate_says_what_is_wrong(self):
+    def test_simulate_rejects_invalid_options_models_and_inputs(self):
         self.simulate("--input", "tp1", expect=2)
         for number in ("-1", "nan", "inf", "x", "0", "1e9", "10 Hz"):
             self.simulate("--input", "tp1", "--out", "a.csv", "--rate-hz", number, expect=2)
@@ -45,7 +45,7 @@ class Offline(bench.BenchTest):
         self.assertIn("bad.csv:3:3", self.simulate("--input", "bad.csv", "--out", "a.csv", expect=3).stderr)
         self.assertFalse((self.folder / "a.csv").exists())
 
-    def test_check_finds_everything_at_once(self):
+    def test_check_reports_all_problems_of_a_file(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
         # The sequence of the vacuum rig is valid for the vacuum rig only.
         vacuum = [path for path in files if "vacuum" in path.parts]
@@ -61,14 +61,14 @@ class Offline(bench.BenchTest):
         self.softgrip("check", "absent.yaml", expect=4)
         self.softgrip("check", expect=2)
 
-    def test_run_in_virtual_time_repeats_its_bytes(self):
+    def test_run_in_virtual_time_writes_reproducible_recordings(self):
         for name in "ab":
             done = self.softgrip("run", "config/sequences/pick_stone.yaml", "--virtual-time", "--record", name)
             self.assertIn("left: RELEASED", done.stdout)
         for file in ("run.csv", "run.json"):
             self.assertEqual(*((self.folder / name / file).read_bytes() for name in "ab"))
 
-    def test_run_says_by_its_exit_code_that_a_grip_failed(self):
+    def test_run_exits_with_code_6_if_a_grip_fails(self):
         rig = self.folder / "config/rig.yaml"
         lines = [line for line in rig.read_text().splitlines() if "object:" not in line]
         rig.write_text("\n".join(lines) + "\n")
@@ -78,7 +78,7 @@ class Offline(bench.BenchTest):
         self.softgrip("run", "config/rig.yaml", expect=3)
         self.softgrip("run", "absent.yaml", expect=4)
 
-    def test_without_a_daemon_it_says_how_to_start_one(self):
+    def test_client_commands_state_how_to_start_a_missing_daemon(self):
         for command in ("status", "watch", "stop", "vent", "acknowledge", "events"):
             done = self.softgrip(command, expect=4)
             self.assertIn("softgripd --config", done.stderr)
@@ -86,7 +86,7 @@ class Offline(bench.BenchTest):
         self.softgrip(expect=2)
         self.assertIn("softgrip 0.", self.softgrip("--version").stdout)
 
-    def test_the_emulator_refuses_what_it_should(self):
+    def test_the_emulator_rejects_invalid_options(self):
         def refused(code, *arguments):
             process = bench.Process("refused", [bench.SOFTGRIP_RIG, "--model",
                                                 self.folder / "config/models/bench_twin.yaml", *arguments], self.folder)
@@ -116,7 +116,7 @@ class Online(bench.BenchTest):
         self.softgripd = self.daemon(self.rig(self.emulated.port))
         self.softgripd.wait_for_state("idle")
 
-    def test_a_day_at_the_bench(self):
+    def test_client_commands_start_observe_and_vent_a_grip(self):
         self.assertIn("idle", self.softgrip("status").stdout)
         self.assertEqual(json.loads(self.softgrip("status", "--json").stdout)["rig"], "bench")
         self.softgrip("stop", expect=5)
@@ -161,7 +161,7 @@ class Online(bench.BenchTest):
         self.assertEqual(os.waitstatus_to_exitcode(status), 0, written)
         return written
 
-    def test_the_live_view_gives_the_terminal_back(self):
+    def test_the_live_view_restores_the_terminal(self):
         for keys in (b"q", b"\x03"):  # ends the program with the key q and with Ctrl-C
             written = self.live({}, keys)
             self.assertIn(b"displacement", written)
@@ -169,7 +169,7 @@ class Online(bench.BenchTest):
             self.assertTrue(written.endswith(b"\x1b[?25h\x1b[?1049l"), written[-40:])
             self.assertIn(b"\x1b[1m", written)
 
-    def test_the_live_view_has_no_colour_when_asked(self):
+    def test_the_live_view_has_no_colour_if_no_color_is_set(self):
         self.assertNotIn(b"m", set(self.escapes(self.live({"NO_COLOR": "1"}, b"q"))))
 
     @staticmethod

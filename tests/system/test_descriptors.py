@@ -14,7 +14,7 @@ class Descriptors(bench.BenchTest):
     def check_recordings(self):
         """Replaces the check of recordings, because the tests of this class record nothing."""
 
-    def test_the_emulator_does_not_spin(self):
+    def test_the_emulator_without_free_descriptors_does_not_busy_wait(self):
         rig = self.emulator()
         pid = rig.child.pid
         in_use = len(os.listdir(f"/proc/{pid}/fd"))

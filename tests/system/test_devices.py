@@ -36,7 +36,7 @@ class Devices(unittest.TestCase):
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         return done.stderr
 
-    def test_a_name_of_two_converters(self):
+    def test_a_name_that_matches_two_converters_is_rejected(self):
         for number, name in enumerate(("mcp4725", "mcp4725", "ads1115")):
             node = self.folder / "iio" / f"iio:device{number}"
             node.mkdir(parents=True)
@@ -67,7 +67,7 @@ class Devices(unittest.TestCase):
         (self.folder / "iio" / node.name).symlink_to(node)
         return node
 
-    def test_another_converter_of_the_name_of_one_that_vanished(self):
+    def test_another_converter_with_the_name_of_a_removed_one_is_not_used(self):
         valve = self.plug(0, "1-0060", "mcp4725")
         self.plug(1, "1-0061", "dac7571")
         sensors = self.plug(2, "1-0048", "ads1115")
@@ -97,7 +97,7 @@ class Devices(unittest.TestCase):
         bench.wait_for("the next session", lambda: "Communication with the board restored" in log.read_text())
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
-    def test_a_label_of_two_chips(self):
+    def test_a_label_that_matches_two_gpio_chips_is_rejected(self):
         rig = self.write_rig("rig.yaml")
         rig.write_text(rig.read_text() + digital_lines.SECTION.replace("chip: gpiochip0", "chip: preloaded"))
         environment = {**digital_lines.environment(self.folder), "GPIO_TWIN": "1"}

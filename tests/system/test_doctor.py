@@ -17,7 +17,7 @@ class Doctor(bench.BenchTest):
         report = json.loads(done.stdout)
         return report, {finding["name"]: finding for finding in report["findings"]}
 
-    def test_a_healthy_rig_is_fit_and_left_vented(self):
+    def test_a_healthy_rig_passes_and_is_vented_afterwards(self):
         emulator = self.emulator()
         report, findings = self.doctor(self.rig(emulator.port), "--move", expect=None)
         # In the tests, the punctuality checks of the doctor may fail, because the machine may be busy.
@@ -27,14 +27,14 @@ class Doctor(bench.BenchTest):
             self.assertEqual(findings[name]["verdict"], "ok", findings[name])
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
-    def test_without_consent_nothing_moves(self):
+    def test_doctor_without_the_option_move_applies_no_pressure(self):
         emulator = self.emulator()
         report, findings = self.doctor(self.rig(emulator.port), expect=None)
         self.assertFalse(report["moved"])
         self.assertNotIn("valve left", findings)
         self.assertLess(max(emulator.pressures_kpa()), 0.01)
 
-    def test_a_board_that_is_away(self):
+    def test_an_unreachable_board_fails_with_advice_on_the_cable(self):
         _, findings = self.doctor(self.rig(1), expect=6)
         self.assertEqual(findings["board"]["verdict"], "fail")
         self.assertIn("cable", findings["board"]["advice"])
@@ -59,7 +59,7 @@ class Doctor(bench.BenchTest):
         self.assertEqual(max(emulator.commands_kpa()), 0)
         return report, findings
 
-    def test_crossed_sensors_are_named_by_the_inputs_to_swap(self):
+    def test_the_advice_on_swapped_sensors_names_both_inputs(self):
         report, findings = self.crossed(("sensor", 0, 1))
         self.assertEqual(self.failures(report), ["sensors left, right"])
         self.assertIn("crossed", findings["sensors left, right"]["text"])
@@ -69,19 +69,19 @@ class Doctor(bench.BenchTest):
         self.assertEqual(findings["valve left"]["verdict"], "ok",
                          "the pressure monitor of the left valve is connected correctly")
 
-    def test_crossed_monitors_are_named_by_the_inputs_to_swap(self):
+    def test_the_advice_on_swapped_pressure_monitors_names_both_inputs(self):
         report, findings = self.crossed(("pressure_monitor", 4, 5))
         self.assertEqual(self.failures(report), ["monitors left, right"])
         self.assertIn("swap input 5 (`left`) and input 4 (`right`)", findings["monitors left, right"]["advice"])
         self.assertEqual(findings["valve left"]["verdict"], "not_judged")
         self.assertEqual(findings["finger left"]["verdict"], "ok")
 
-    def test_crossed_valves_are_named_by_the_outputs_to_swap(self):
+    def test_the_advice_on_swapped_valves_names_both_outputs(self):
         report, findings = self.crossed(("valve", 0, 1))
         self.assertEqual(self.failures(report), ["valves left, right"])
         self.assertIn("swap output 1 (`left`) and output 0 (`right`)", findings["valves left, right"]["advice"])
 
-    def test_one_sensor_without_its_cable_is_one_failure(self):
+    def test_a_disconnected_sensor_is_reported_as_one_failure(self):
         emulator = self.emulator("--faults", self.write("faults.yaml", (
             "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
         emulator.ask("fault blind")
@@ -95,7 +95,7 @@ class Doctor(bench.BenchTest):
         report, _ = self.doctor(rig, expect=6)
         self.assertEqual(self.failures(report), ["sensor left"])
 
-    def test_a_daemon_without_its_board_is_one_failure(self):
+    def test_a_daemon_without_a_board_is_reported_as_one_failure(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -107,7 +107,7 @@ class Doctor(bench.BenchTest):
         self.assertIn("see `board`", findings["fault"]["text"])
         self.assertEqual(findings["sensor left"]["verdict"], "not_judged")
 
-    def test_without_a_daemon_the_rig_is_named(self):
+    def test_doctor_without_a_daemon_requires_the_option_rig(self):
         """The working directory contains the shipped config/rig.yaml, which describes the simulated rig."""
         self.rig(1)
         asked = self.softgrip("doctor", expect=2)
@@ -118,7 +118,7 @@ class Doctor(bench.BenchTest):
         self.assertTrue(json.loads(self.softgrip("doctor", "--rig", "config/rig.yaml", "--json", expect=None)
                                    .stdout)["simulated"])
 
-    def test_a_daemon_knows_its_rig_file(self):
+    def test_doctor_takes_the_rig_file_from_the_running_daemon(self):
         emulator = self.emulator()
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")
@@ -129,13 +129,13 @@ class Doctor(bench.BenchTest):
         self.assertIn("disk", {finding["name"] for finding in report["findings"]})
         self.softgrip("doctor", "--move", expect=5)
 
-    def test_no_folder_for_recordings(self):
+    def test_a_recording_folder_that_cannot_be_created_is_a_failure(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port, [(r"directory: \S+/runs", "directory: /proc/runs")])
         _, findings = self.doctor(rig, expect=6)
         self.assertEqual(findings["disk"]["verdict"], "fail")
 
-    def test_a_running_daemon_is_asked_and_keeps_its_board(self):
+    def test_doctor_asks_a_running_daemon_and_does_not_use_the_board(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -149,7 +149,7 @@ class Doctor(bench.BenchTest):
         self.assertEqual(daemon.status()["state"], "idle")
         self.assertEqual(daemon.end(), 0)
 
-    def test_a_refused_rig_and_one_that_is_not_there(self):
+    def test_an_invalid_rig_file_exits_with_3_and_a_missing_one_with_4(self):
         self.softgrip("doctor", "--rig", self.write("bad.yaml", "name: x\n"), expect=3)
         self.softgrip("doctor", "--rig", "nowhere.yaml", expect=4)
 
@@ -205,7 +205,7 @@ class Calibrate(bench.BenchTest):
         x0, x1, y0, y1 = (float(found.group(i)) for i in range(1, 5))
         return lambda x: y0 + (x - x0) * (y1 - y0) / (x1 - x0)
 
-    def test_a_wrong_sensor_and_a_wrong_valve_are_found_out(self):
+    def test_wrong_sensor_and_valve_calibrations_are_corrected(self):
         emulator = self.emulator()
         rig = self.wrong_rig(emulator)
         child = self.start(rig, "--sensor", "--move", "--settle-s", "1.5", "--average-s", "0.6")
@@ -226,7 +226,7 @@ class Calibrate(bench.BenchTest):
         for volts in (2, 5):
             self.assertAlmostEqual(valve(volts), 10 * volts, delta=0.5, msg=out)
 
-    def test_the_answers_may_be_options_and_the_output_repeats_its_date(self):
+    def test_gauge_values_can_be_options_and_the_output_states_the_date(self):
         emulator = self.emulator()
         done = self.softgrip("calibrate", "--rig", self.rig(emulator.port), "--channel", "left", "--sensor", "--move",
                              "--settle-s", "0.5", "--average-s", "0.3", "--gauge-mm", "4.8", "18.9", "--date",
@@ -235,7 +235,7 @@ class Calibrate(bench.BenchTest):
         self.assertTrue(text.startswith("# softgrip calibrate, 2026-01-02: rig bench, channel left\n"), text)
         self.assertIn("left.yaml", done.stdout)
 
-    def test_nonsense_is_refused(self):
+    def test_invalid_gauge_values_and_options_are_rejected(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         quick = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.3", "--average-s", "0.3")
@@ -268,7 +268,7 @@ class Calibrate(bench.BenchTest):
             self.assertAlmostEqual(reading_mm, self.true_mm(volts), delta=1.5)
         self.softgrip("check", rig)
 
-    def test_what_is_far_off_is_doubted_and_needs_a_yes(self):
+    def test_an_implausible_scale_requires_confirmation(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         before = rig.read_bytes()
@@ -288,7 +288,7 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(child.returncode, 0, said)
         self.assertNotEqual(rig.read_bytes(), before)
 
-    def test_a_mistyped_answer_is_asked_again(self):
+    def test_an_invalid_answer_repeats_the_question(self):
         emulator = self.emulator()
         child = self.start(self.rig(emulator.port), *self.QUICK[2:])
         _, said = child.communicate(b"4,8mm\n4,8\nabout 19\n18.9\n", timeout=bench.PATIENCE_S)
@@ -296,7 +296,7 @@ class Calibrate(bench.BenchTest):
         self.assertIn(b"`4,8mm` is not a number. Please enter", said)
         self.assertIn(b"`about 19` is not a number. Please enter", said)
 
-    def test_a_full_disk_leaves_the_rig_file(self):
+    def test_a_full_disk_leaves_the_rig_file_unchanged(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         before = rig.read_bytes()
@@ -310,7 +310,7 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(rig.read_bytes(), before)
         self.assertEqual(len(list(rig.parent.glob("test_rig.yaml.*"))), 0)
 
-    def test_ctrl_c_vents(self):
+    def test_ctrl_c_vents_the_rig(self):
         emulator = self.emulator()
         child = self.start(self.rig(emulator.port), "--valve", "--move", "--settle-s", "3")
         bench.wait_for("motion", lambda: emulator.commands_kpa()[0] > 5)

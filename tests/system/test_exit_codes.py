@@ -79,7 +79,7 @@ NEEDS_SHIM = unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built:
 
 
 class Page(unittest.TestCase):
-    def test_the_table_has_every_command_and_every_cell_is_a_code(self):
+    def test_the_table_lists_every_tested_command_with_valid_codes(self):
         table = exit_codes.table()
         self.assertEqual(set(table), set(DESK) | set(CLIENTS) | set(MOTION) | set(exit_codes.ELSEWHERE))
         for command, cells in table.items():
@@ -124,7 +124,7 @@ class Desk(bench.BenchTest):
         self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{said}")
 
     @NEEDS_SHIM
-    def test_done_and_the_files_are_written_by_one_function(self):
+    def test_a_successful_command_replaces_its_output_files_atomically(self):
         def check(name, command, cell):
             for line in (command.done, *command.more):
                 done, created = self.runner.created(line)
@@ -138,7 +138,7 @@ class Desk(bench.BenchTest):
         self.each("done", check)
         self.assertEqual(list(self.folder.rglob(".softgrip-*")), [])
 
-    def test_refused(self):
+    def test_a_refused_command_exits_with_the_listed_code(self):
         def check(name, command, cell):
             done = self.runner.run(command.refused)
             self.ended(done, cell)
@@ -151,7 +151,7 @@ class Desk(bench.BenchTest):
         self.assertEqual(list((self.folder / "out").iterdir()), [])
 
     @NEEDS_SHIM
-    def test_signal(self):
+    def test_a_signal_ends_a_command_with_the_listed_code(self):
         def check(name, command, cell):
             for number in STOPPING:
                 if command.hangs_at:
@@ -165,7 +165,7 @@ class Desk(bench.BenchTest):
         self.each("signal", check)
         self.assertEqual([path for path in (self.folder / "out").rglob("*") if path.is_file()], [])
 
-    def test_full_disk(self):
+    def test_a_full_disk_ends_a_command_with_the_listed_code(self):
         disk = FullDisk(self.folder / "full")
         self.addCleanup(disk.close)
         def put_an_old_file(name, command, _):
@@ -194,7 +194,7 @@ class Desk(bench.BenchTest):
         self.each("full disk", check)
         self.assertEqual(list(disk.folder.rglob(".softgrip-*")), [], "no incomplete file may remain")
 
-    def test_closed_pipe(self):
+    def test_a_closed_pipe_ends_a_command_with_the_listed_code(self):
         def check(name, command, cell):
             self.ended(self.runner.unread(command.done, ignored=False), cell, signal.SIGPIPE)
             if name != "study":
@@ -239,7 +239,7 @@ class Clients(bench.BenchTest):
     def ended(self, done, cell, number=None):
         self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{done.stderr.decode()[-1500:]}")
 
-    def test_done(self):
+    def test_a_successful_client_exits_with_the_listed_code(self):
         def check(name, command, cell):
             self.settle()
             self.ready_for(name)
@@ -247,7 +247,7 @@ class Clients(bench.BenchTest):
 
         self.each("done", check)
 
-    def test_refused(self):
+    def test_a_refused_client_exits_with_the_listed_code(self):
         def check(name, command, cell):
             self.settle()
             if name == "start --wait":
@@ -256,7 +256,7 @@ class Clients(bench.BenchTest):
 
         self.each("refused", check)
 
-    def test_signal(self):
+    def test_a_signal_ends_a_client_with_the_listed_code(self):
         for number in STOPPING:
             self.settle()
             for name, line in (("watch", "watch"), ("start --wait", "start pick_stone --wait")):
@@ -271,7 +271,7 @@ class Clients(bench.BenchTest):
 
         self.each("signal", check)
 
-    def test_fault(self):
+    def test_a_fault_ends_a_client_with_the_listed_code(self):
         self.settle()
         # The board stops responding while a command waits for the end of a sequence.
         child = subprocess.Popen(Runner.words("start pick_stone --wait", ""), cwd=self.folder, stdin=subprocess.DEVNULL,
@@ -287,7 +287,7 @@ class Clients(bench.BenchTest):
 
         self.each("fault", check)
 
-    def test_full_disk(self):
+    def test_a_full_disk_ends_a_client_with_the_listed_code(self):
         disk = FullDisk(self.folder / "full")
         self.addCleanup(disk.close)
         disk.fill()
@@ -302,7 +302,7 @@ class Clients(bench.BenchTest):
 
         self.each("full disk", check)
 
-    def test_closed_pipe(self):
+    def test_a_closed_pipe_ends_a_client_with_the_listed_code(self):
         def check(name, command, cell):
             for ignored in (False, True):
                 self.settle()
@@ -365,13 +365,13 @@ class Motion(bench.BenchTest):
                        pause_s=0.005)
         return child
 
-    def test_refused(self):
+    def test_a_refused_motion_exits_with_the_listed_code(self):
         def check(name, command, cell):
             self.ended(self.runner.run(command.refused.format(rig=self.rig_path, out="out")), cell)
 
         self.each("refused", check)
 
-    def test_signal(self):
+    def test_a_signal_ends_a_motion_with_the_listed_code_and_safe_outputs(self):
         def check(name, command, cell):
             for number in STOPPING:
                 child = self.working(self.line(command))
@@ -382,7 +382,7 @@ class Motion(bench.BenchTest):
 
         self.each("signal", check)
 
-    def test_fault(self):
+    def test_a_lost_board_ends_a_motion_with_the_listed_code(self):
         self.assertEqual({name: cells[0] for name, cells in exit_codes.motion_faults().items()},
                          {name: self.table[name]["fault"] for name in MOTION})
         def check(name, command, cell):
@@ -395,7 +395,7 @@ class Motion(bench.BenchTest):
 
         self.each("fault", check)
 
-    def test_fault_with_safe_outputs(self):
+    def test_a_sensor_fault_ends_a_motion_with_safe_outputs(self):
         """Tests a sensor that fails while its finger is pressurised. The board still responds."""
         for name, (_, cell) in exit_codes.motion_faults().items():
             with self.subTest(name):
@@ -406,7 +406,7 @@ class Motion(bench.BenchTest):
                 self.assertEqual(child.returncode, code_of(cell), f"{name}: {said[-1500:]}")
                 self.check_safe(name)
 
-    def test_done(self):
+    def test_a_completed_motion_has_the_listed_code_and_safe_outputs(self):
         def check(name, command, cell):
             done = self.runner.run(self.line(command))
             self.ended(done, cell)
@@ -416,7 +416,7 @@ class Motion(bench.BenchTest):
 
         self.each("done", check)
 
-    def test_full_disk(self):
+    def test_a_full_disk_ends_a_motion_with_the_listed_code(self):
         disk = FullDisk(self.folder / "full")
         self.addCleanup(disk.close)
         lines = {name: self.line(command, "full") for name, command in MOTION.items()}
@@ -437,7 +437,7 @@ class Motion(bench.BenchTest):
 
         self.each("full disk", check)
 
-    def test_closed_pipe(self):
+    def test_a_closed_pipe_ends_a_motion_with_the_listed_code(self):
         def check(name, command, cell):
             # The experiments of baseline --rig take 2 minutes, so the test runs this command only once.
             for ignored in (False, True) if name != "baseline --rig" else (False,):

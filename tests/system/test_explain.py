@@ -18,7 +18,7 @@ class Explain(bench.BenchTest):
                              "--out", "out", "--explain", timeout_s=170).stdout
         return text, json.loads((self.folder / "out/diagnosis.json").read_text())
 
-    def test_states_the_errors_of_each_run_and_every_cause_that_was_tried(self):
+    def test_explain_lists_the_errors_of_each_run_and_all_tested_causes(self):
         text, found = self.diagnosed(["tp1", "sp2"])
         self.assertEqual([run["run"] for run in found["runs"]], ["tp1", "sp2"])
         for run in found["runs"]:
@@ -32,6 +32,6 @@ class Explain(bench.BenchTest):
             self.assertIn(f"\n  {candidate['id']} ", text)
         self.assertIn("error by run", (self.folder / "out/report.html").read_text())
 
-    def test_of_a_single_log_the_runs_are_its_halves(self):
+    def test_a_single_log_is_split_into_two_halves_as_runs(self):
         _, found = self.diagnosed(["sp2"])
         self.assertEqual([run["run"] for run in found["runs"]], ["first half", "second half"])

@@ -87,13 +87,13 @@ class Signals(bench.BenchTest):
         self.export("again.mat")
         self.assertEqual((self.folder / "run.mat").read_bytes(), (self.folder / "again.mat").read_bytes())
 
-    def test_mat_is_imported_again(self):
+    def test_an_exported_mat_file_can_be_imported(self):
         self.export("run.mat")
         self.softgrip("import", "run.mat", "--out", "log.csv", "--time", "time_s", "--command",
                       "left_pressure_command_kpa", "--displacement", "left_displacement_mm")
         same(self, columns_of(self.folder / "log.csv")["displacement_mm"], [math.nan, *foreign_files.TIP[1:]])
 
-    def test_mcap_is_as_the_specification_has_it(self):
+    def test_mcap_follows_the_specification(self):
         self.export("run.mcap")
         topics = mcap_reading.read(self.folder / "run.mcap")
         self.assertEqual(sorted(topics), ["/left", "/right"])
@@ -104,7 +104,7 @@ class Signals(bench.BenchTest):
         self.assertEqual(left[0]["state"], "idle, at rest")
         self.assertEqual([message["displacement_mm"] for message in left[1:]], foreign_files.TIP[1:])
 
-    def test_a_broken_mcap_is_noticed_by_the_reading(self):
+    def test_the_test_reader_detects_a_damaged_mcap_file(self):
         self.export("run.mcap")
         path = self.folder / "run.mcap"
         whole = bytearray(path.read_bytes())
@@ -127,7 +127,7 @@ class Signals(bench.BenchTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
-    def test_mcap_is_read_by_its_own_reader(self):
+    def test_mcap_is_read_by_the_reader_of_the_format_authors(self):
         self.export("run.mcap")
         told = self.read_by_its_own_reader(self.folder / "run.mcap")
         self.assertTrue(told["done"])
@@ -154,7 +154,7 @@ class Signals(bench.BenchTest):
                 foreign_files.T, foreign_files.COMMAND, foreign_files.PRESSURE, [math.nan, *foreign_files.TIP[1:]])):
             same(self, column, wanted)
 
-    def test_formats_are_the_endings_or_refused(self):
+    def test_export_rejects_unknown_formats_and_unsuitable_sources(self):
         for arguments in (("run.xlsx",), ("run",), ("run.csv2",), ("-", "--format", "mat"), ("x.csv", "--format", "tdms")):
             self.export(*arguments, expect=2)
         self.export("absent.csv", source="absent", expect=4)
@@ -191,7 +191,7 @@ class PerLog(bench.BenchTest):
     def rmse(errors):
         return math.sqrt(sum(e * e for e in errors) / len(errors))
 
-    def test_identify_writes_what_was_fitted_and_what_was_held_out(self):
+    def test_identify_writes_the_fitted_and_held_out_series_of_each_log(self):
         self.softgrip("identify", "--data", "a.csv", "--validate", "b.csv", "a.csv", "--out", "o", "--start", MODEL,
                       "--starts", "2", "--fit-share", "0.5", timeout_s=120)
         told = json.loads((self.folder / "o/identify.json").read_text())
@@ -206,7 +206,7 @@ class PerLog(bench.BenchTest):
         for path in ("o/b/series.csv", "o/a (2)/series.csv"):
             self.assertEqual(set(self.series(path, "identified")["held_out"]), {1.0})
 
-    def test_validate_writes_them_with_out_alone(self):
+    def test_validate_writes_the_series_of_each_log(self):
         self.softgrip("validate", "--model", MODEL, "--data", "a.csv", "b.csv", "--out", "o")
         told = json.loads((self.folder / "o/validate.json").read_text())
         for name in "ab":
@@ -216,7 +216,7 @@ class PerLog(bench.BenchTest):
         messages = mcap_reading.read(self.folder / "series.mcap")["/signals"]
         self.assertEqual([m["measured_mm"] for _, m in messages], columns_of(self.folder / "a.csv")["displacement_mm"])
 
-    def test_diagnose_writes_every_model(self):
+    def test_diagnose_writes_the_series_of_all_three_models(self):
         given = (self.folder / MODEL).read_text()
         without = given[:given.index("valve:")] + given[given.index("actuator:"):]
         self.softgrip("diagnose", "--model", self.write("given.yaml", without), "--data", "a.csv", "b.csv", "--out", "o",
@@ -352,23 +352,23 @@ class CModel(ExportedC):
         self.assert_equal_motions(ours, [row[0] for row in self.run_driver(commands)])
         return told
 
-    def test_the_bench_twin_is_simulate_to_a_picometre(self):
+    def test_the_c_code_of_bench_twin_equals_simulate_within_1e_9_mm(self):
         self.assertTrue(self.compare(MODEL)["inverse"])
 
-    def test_the_published_model_has_no_inverse_and_says_why(self):
+    def test_export_states_why_the_published_model_has_no_inverse(self):
         told = self.compare("config/models/zhang2025.yaml")
         self.assertFalse(told["inverse"])
         self.assertIn("beta", told["no_inverse"])
         self.assertNotIn("inverse_step", (self.folder / "model.c").read_text())
 
-    def test_play_operators_and_a_bent_characteristic(self):
+    def test_c_code_of_play_and_nonlinear_characteristic_equals_simulate(self):
         self.compare("config/models/soft_arm_play.yaml")
 
-    def test_every_block_that_has_c(self):
+    def test_c_code_of_every_supported_block_equals_simulate(self):
         before = EVERYTHING.index("  - characteristic")
         self.compare(self.write("every.yaml", EVERYTHING[:before] + LINEAR_MODES + EVERYTHING[before:]))
 
-    def test_linear_modes_of_one_slow_mode_and_of_none(self):
+    def test_c_code_of_linear_modes_with_one_or_no_mode_equals_simulate(self):
         slow = ", period1_s: 100, damping_ratio1: 100, gain1_mm_per_kpa: 0.3, lead1_mm_per_kpa: 0.1"
         for modes in (slow, ""):
             self.compare(self.write("modes.yaml", f"""name: modes
@@ -379,14 +379,14 @@ actuator:
   - linear_modes: {{direct_mm_per_kpa: 0.1{modes}}}
 """))
 
-    def test_a_lag_in_one_direction_follows_at_once_in_the_other(self):
+    def test_c_code_of_lags_in_only_one_direction_equals_simulate(self):
         for filling_s, venting_s in ((0, 0.06), (0.03, 0)):
             for block in ("asymmetric_valve_lag", "chamber_lag"):
                 lag = f"{block}: {{filling_time_constant_s: {filling_s}, venting_time_constant_s: {venting_s}}}"
                 limit = f"rate_limit: {{filling_s_per_kpa: {filling_s / 10}, venting_s_per_kpa: {venting_s / 10}}}"
                 self.compare(self.write("one_way.yaml", with_valve(limit, lag)))
 
-    def test_a_delay_has_room_for_all_that_four_lags_divide(self):
+    def test_c_code_of_a_delay_after_four_lags_equals_simulate(self):
         model = self.write("late.yaml", with_valve(
             "rate_limit: {filling_s_per_kpa: 0.0004, venting_s_per_kpa: 0.0003}", "valve_lag: {time_constant_s: 0.004}",
             "asymmetric_valve_lag: {filling_time_constant_s: 0.003, venting_time_constant_s: 0.005}",
@@ -395,7 +395,7 @@ actuator:
         # At each sample, the command turns round, and each lag divides the segments of the lag before it.
         self.compare(model, [20.0 + 15 * (i % 2) for i in range(4 * RATE_HZ)] + [50.0] * RATE_HZ)
 
-    def test_the_inverse_undoes_the_body_exactly(self):
+    def test_the_c_inverse_cancels_an_actuator_within_1e_9_mm(self):
         for text in ((self.folder / MODEL).read_text(), EVERYTHING):
             body = self.write("body.yaml", text[:text.index("valve:")] + text[text.index("actuator:"):])
             self.assertTrue(self.compiled(INVERSE_DRIVER, body)["inverse"])
@@ -404,7 +404,7 @@ actuator:
             reached = self.simulated(body, [0.0, *commands])
             self.assertLess(max(abs(a - b) for a, b in zip(reached[1:], wanted)), 1e-9)
 
-    def test_the_inverse_leads_the_lag_and_leaves_the_delay(self):
+    def test_the_c_inverse_compensates_the_lag_but_not_the_delay(self):
         self.assertTrue(self.compiled(INVERSE_DRIVER, MODEL)["inverse"])
         wanted = self.wanted()
         reached = self.simulated(MODEL, [0.0, *(row[0] for row in self.run_driver(wanted))])
@@ -412,7 +412,7 @@ actuator:
         self.assertLess(max(abs(a - b) for a, b in zip(reached[1 + late:], wanted)), 0.02)
         self.assertGreater(max(abs(a - b) for a, b in zip(reached[1:], wanted)), 0.2)
 
-    def test_what_has_no_c_is_named(self):
+    def test_export_names_the_blocks_without_c_code(self):
         text = (self.folder / MODEL).read_text().replace("exponent: 1", "exponent: 2")
         path = self.write("sharp.yaml", text + "sensor:\n  - sensor_lag: {time_constant_s: 0.01}\n")
         done = self.softgrip("export", path, "--out", "x.c", "--rate-hz", "100", expect=3)
@@ -488,13 +488,13 @@ class CModelInOctave(ExportedC):
     def numbers(self, file):
         return list(map(float, (self.folder / file).read_text().split()))
 
-    def test_its_mex_function_is_simulate(self):
+    def test_the_mex_function_equals_simulate(self):
         self.assertTrue(self.octave(MODEL))
         reached = self.simulated(MODEL, [0.0, *self.numbers("inverted.txt")])
         late = round(0.13 * RATE_HZ)
         self.assertLess(max(abs(a - b) for a, b in zip(reached[1 + late:], self.wanted())), 0.02)
 
-    def test_its_mex_function_without_an_inverse_says_so(self):
+    def test_the_mex_function_reports_a_missing_inverse(self):
         self.assertFalse(self.octave("config/models/zhang2025.yaml"))
 
 

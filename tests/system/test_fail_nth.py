@@ -18,21 +18,21 @@ class FailNth(unittest.TestCase):
                 failed, through = fail_nth.until_success(scenario, call, from_then_on=from_then_on)
                 self.assertTrue(through, f"after {failed} failed calls the run has still not succeeded")
 
-    def test_the_daemons_files(self):
+    def test_the_daemon_handles_each_failed_file_call(self):
         self.check(self.scenario.virtual, "write", "short_write", "rename", "mkdir")
 
-    def test_a_full_disk(self):
+    def test_daemon_and_simulate_handle_a_disk_that_fills_at_any_write(self):
         self.check(self.scenario.virtual, "write", from_then_on=True)
         self.check(self.scenario.simulate, "write", from_then_on=True)
 
-    def test_what_softgrip_writes(self):
+    def test_simulate_and_validate_handle_each_failed_file_call(self):
         self.check(self.scenario.simulate, "open", "write", "short_write", "rename")
         self.check(self.scenario.validate, "write", "rename", "mkdir")
 
-    def test_the_daemons_threads(self):
+    def test_the_daemon_handles_each_failed_thread_start(self):
         self.check(self.scenario.real, "thread")
 
-    def test_the_daemons_start(self):
+    def test_the_daemon_handles_failed_bind_listen_and_mlockall_calls(self):
         self.check(self.scenario.real, "bind", "listen", "mlockall")
 
 

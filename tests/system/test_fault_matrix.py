@@ -22,45 +22,45 @@ class FaultMatrix(unittest.TestCase):
                     self.skipTest(result["skipped"])
                 self.assertIsNone(result["wrong"], f"{result['wrong']}\n{result['log']}")
 
-    def test_wire_while_connecting_and_idle(self):
+    def test_connection_faults_while_connecting_and_idle_end_as_specified(self):
         self.check("masquerade/connect", "silent/idle", "exception_4/idle", "half_open/idle")
 
-    def test_wire_while_closing(self):
+    def test_connection_faults_while_closing_end_as_specified(self):
         self.check("repetition/closing", "loss_of_replies/closing")
 
-    def test_wire_while_holding(self):
+    def test_connection_faults_while_holding_end_as_specified(self):
         self.check("blocked_channel/holding")
 
-    def test_habits_of_boards(self):
+    def test_unusual_board_behaviour_ends_as_specified(self):
         self.check("settling/connect", "request_repeated/closing", "requests_repeated/holding", "no_transaction_id/closing",
                    "few_registers/closing", "stray_bytes_over_tcp/holding")
 
-    def test_outputs_that_are_not_what_was_written(self):
+    def test_outputs_that_differ_from_the_command_end_as_specified(self):
         self.check("asymmetric_information/closing", "received_by_some_only/venting")
 
-    def test_sensors(self):
+    def test_sensor_faults_end_as_specified(self):
         self.check("sensor_jump/closing", "sensor_out_of_range/holding")
 
-    def test_lines(self):
+    def test_a_burst_line_and_a_lost_supply_end_as_specified(self):
         self.check("line_burst/closing", "supply_lost/holding")
 
-    def test_pauses(self):
+    def test_pauses_of_process_and_loop_end_as_specified(self):
         self.check("process_above/holding", "loop_above/closing", "serial_loop_above/closing")
 
-    def test_below_rest_the_wire(self):
+    def test_connection_faults_of_a_vacuum_rig_end_as_specified(self):
         self.check("silent/idle", "loss_of_requests/closing", "loss_of_replies/holding", "delay/venting", vacuum=True)
 
-    def test_below_rest_the_board_and_the_line(self):
+    def test_sensor_line_and_supply_faults_of_a_vacuum_rig_end_as_specified(self):
         self.check("sensor_out_of_range/holding", "line_burst/closing", "supply_lost/holding", vacuum=True)
 
-    def test_below_rest_pauses(self):
+    def test_pauses_of_a_vacuum_rig_end_as_specified(self):
         self.check("process_above/holding", "loop_above/closing", vacuum=True)
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
-    def test_digital_lines(self):
+    def test_digital_line_faults_end_as_specified(self):
         self.check("lines_emergency_stop/holding", "lines_emergency_stop_in_a_pause/closing", "lines_panel_above/closing")
 
-    def test_every_cell_says_what_it_expects(self):
+    def test_every_cell_of_the_matrix_states_the_expected_end(self):
         table = fault_matrix.Table()
         for name, phase in table.cells():
             cell = table.cell(name, phase)

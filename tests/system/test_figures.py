@@ -32,7 +32,7 @@ class Figures(unittest.TestCase):
                       "--out", log)
         return log
 
-    def test_a_report_of_600000_rows_is_small_and_its_figures_have_captions_and_files(self):
+    def test_a_report_of_600000_rows_is_small_and_each_figure_is_also_a_file(self):
         out = self.folder / "out"
         self.softgrip("validate", "--model", GIVEN, "--data", self.log(12000), "--out", out)
         page = (out / "report.html").read_text()
@@ -58,7 +58,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(len(rows), 5001, "every sample of the log")
         self.assertIn("time [s]", rows[0])
 
-    def test_plot_obeys_the_ending_or_refuses(self):
+    def test_plot_writes_the_format_of_the_file_name_or_rejects_the_call(self):
         first, second = self.log(100), self.log(100, "steps")
         for ending, begins in ((".svg", b"<svg"), (".pdf", b"%PDF-"), (".png", b"\x89PNG"), (".html", b"<!DOCTYPE")):
             picture = self.folder / f"picture{ending}"

@@ -38,7 +38,7 @@ class Overwriting(bench_files.Files):
             values = [re.search(rf"^# {name}, {count}: (\d+)$", text, re.M)[1] for name in ("Overruns", "Slips")]
             self.assertEqual(*values)
 
-    def test_a_file_over_itself(self):
+    def test_a_command_does_not_overwrite_its_own_input(self):
         self.record()
         self.refused("export rec --out rec/run.csv", "rec/run.csv")
         self.refused("export rec --format csv --out rec/run.json", "rec/run.json")
@@ -57,7 +57,7 @@ class Overwriting(bench_files.Files):
         self.refused("--config config/rig.yaml --virtual-time --duration-s 1 --histograms config/rig.yaml", "config/rig.yaml",
                      bench.SOFTGRIPD)
 
-    def test_through_links(self):
+    def test_a_command_does_not_overwrite_its_input_through_a_link(self):
         self.record()
         for link, make in (("soft", os.symlink), ("hard", os.link)):
             make(self.folder / "rec/run.csv", self.folder / f"{link}.csv")
@@ -66,7 +66,7 @@ class Overwriting(bench_files.Files):
             self.refused(f"plot log.csv --out {link}.svg", "log.csv")
             self.refused(f"simulate --model {TWIN} --input {link}.csv --out rec/run.csv", "rec/run.csv")
 
-    def test_a_folder_that_holds_an_input(self):
+    def test_a_command_does_not_overwrite_an_input_in_its_output_folder(self):
         self.softgrip("baseline", "--data", "log.csv", "--model", TWIN, "--out", "base")
         for name in ("identified/model.yaml", "diagnosed/model.yaml", "figures/figure-1.csv", "found/step_1/log.csv",
                      "judged/log/series.csv", "health/health.json"):
@@ -82,7 +82,7 @@ class Overwriting(bench_files.Files):
         self.refused("investigate --model model.yaml --data found/step_1/log.csv --rig config/rig.yaml --rig-channel left --yes "
                      "--out found", "found/step_1/log.csv")
 
-    def test_what_is_continued_is_no_input(self):
+    def test_import_can_overwrite_the_column_mapping_that_it_has_read(self):
         """import may overwrite the column mapping that it has read, and health may append to the scores that it has
         read."""
         self.softgrip("import", "log.csv", "--yes", "--out", "again.csv")
@@ -105,7 +105,7 @@ class Pipes(bench_files.Files):
     """Tests with a named pipe in place of an input file. No process writes to the pipe, so a command that waits for
     the pipe would never end."""
 
-    def test_inputs(self):
+    def test_commands_do_not_wait_for_a_named_pipe_as_input(self):
         self.record()
         os.mkfifo(self.folder / "pipe")
         os.mkfifo(self.folder / "pipe.yaml")
@@ -133,7 +133,7 @@ class Pipes(bench_files.Files):
             self.assertIn(done.returncode, (3, 4), done.stderr)
             self.assertIn(b"it is a pipe", done.stderr)
 
-    def test_a_result_of_health_and_a_recording(self):
+    def test_status_and_web_do_not_wait_for_named_pipes_in_the_recordings(self):
         self.start_rig()
         (self.folder / "runs/health").mkdir(parents=True)
         os.mkfifo(self.folder / "runs/health/health.json")
@@ -175,24 +175,24 @@ class Bombs(bench_files.Files):
                 text.write(rows)
         self.assertLess((self.folder / "bomb.csv.gz").stat().st_size, 4 << 20)
 
-    def test_text_that_is_larger_than_the_bound_when_it_is_decompressed(self):
+    def test_gzip_text_above_512_mib_is_rejected(self):
         self.packed(b"0.000000000000000000000000000000000,1.00000000000000000000000000000000,2\n" * 10_000, 900)
         said = self.limited("import", "bomb.csv.gz", "--yes", "--out", "log.csv", code=3)
         self.assertIn("after decompression, the gzip file has more than 536870912 bytes", said)
 
-    def test_text_of_very_many_rows(self):
+    def test_text_with_more_than_16777216_lines_is_rejected(self):
         self.packed(b"0,1,2\n" * 100_000, 600)
         self.assertIn("the text has more than 16777216 lines", self.limited("import", "bomb.csv.gz", "--yes", "--out", "x.csv", code=3))
         with open(self.folder / "plain.csv", "wb") as text:
             text.write(b"time_s,pressure_command_kpa,displacement_mm\n" + b"0,1,2\n" * 20_000_000)
         self.assertIn("16777216 lines", self.limited("import", "plain.csv", "--yes", "--out", "x.csv", code=3))
 
-    def test_text_of_one_line(self):
+    def test_a_line_longer_than_1_mib_is_rejected(self):
         self.packed(b"," * 1_000_000, 400)
         self.assertIn("line 2 has more than 1048576 bytes",
                       self.limited("import", "bomb.csv.gz", "--yes", "--out", "x.csv", code=3))
 
-    def test_workbooks(self):
+    def test_a_workbook_with_too_many_bytes_or_cells_is_rejected(self):
         """Tests a sheet of 600 MB, a sheet with more cells than the memory can hold, and long strings that many cells
         repeat."""
         cells = "<c><v>1</v></c>" * 4
@@ -207,7 +207,7 @@ class Bombs(bench_files.Files):
             (self.folder / "bomb.xlsx").write_bytes(packed)
             self.assertIn(reason, self.limited("import", "bomb.xlsx", "--yes", "--out", "x.csv", code=3))
 
-    def test_matlab_variables(self):
+    def test_a_too_large_matlab_variable_is_skipped(self):
         zeros = [bytes(8 << 20)] * 100
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         small = b"".join(compressed_matrix(name, 50, [struct.pack("<50d", *(i * scale for i in range(50)))])
@@ -221,7 +221,7 @@ class Bombs(bench_files.Files):
             self.assertIn("'bomb' is skipped", (self.folder / "from_mat.import.yaml").read_text())
             self.assertEqual(len((self.folder / "from_mat.csv").read_text().splitlines()), 51)
 
-    def test_matlab_cells(self):
+    def test_a_matlab_file_with_too_many_cells_is_rejected(self):
         """Tests a file of empty cells. In the file, an empty cell takes 8 bytes, and almost none after compression. In
         memory, an empty cell takes an object of libmatio."""
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
@@ -232,7 +232,7 @@ class Bombs(bench_files.Files):
         said = self.limited("import", "bomb.mat", "--yes", "--out", "x.csv", code=3)
         self.assertIn("the cells, structures and objects of the file have more than 100000 parts", said)
 
-    def test_hdf5_chunks(self):
+    def test_too_large_hdf5_datasets_and_chunks_are_skipped(self):
         h5py = self.h5py()
         with h5py.File(self.folder / "bomb.h5", "w") as file:
             for name, scale in (("time_s", 0.1), ("pressure_command_kpa", 1), ("displacement_mm", 0.5)):
@@ -262,14 +262,14 @@ class OtherFiles(bench_files.Files):
         for name, scale in (("time_s", 0.1), ("pressure_command_kpa", 1)):
             file[name] = [i * scale for i in range(50)]
 
-    def test_external_storage(self):
+    def test_hdf5_external_storage_is_rejected(self):
         h5py = self.h5py()
         with h5py.File(self.folder / "a.h5", "w") as file:
             self.columns(file)
             file.create_dataset("run/displacement_mm", (50,), "f8", external=[(str(self.secret), 0, 400)])
         self.refused("a.h5", "external storage")
 
-    def test_external_links(self):
+    def test_an_hdf5_external_link_is_rejected(self):
         h5py = self.h5py()
         with h5py.File(self.folder / "other.h5", "w") as file:
             file["data"] = [float(i) for i in range(50)]
@@ -278,7 +278,7 @@ class OtherFiles(bench_files.Files):
             file["displacement_mm"] = h5py.ExternalLink(str(self.folder / "other.h5"), "data")
         self.refused("a.h5", "external link")
 
-    def test_a_soft_link_through_an_external_link(self):
+    def test_a_soft_link_through_an_external_link_is_not_followed(self):
         h5py = self.h5py()
         with h5py.File(self.folder / "other.h5", "w") as file:
             file["data"] = [float(i) for i in range(50)]
@@ -291,7 +291,7 @@ class OtherFiles(bench_files.Files):
         self.assertIn("no column looks like a displacement", said)
         self.assertFalse((self.folder / "stolen.csv").exists())
 
-    def test_virtual_datasets(self):
+    def test_an_hdf5_virtual_dataset_is_rejected(self):
         h5py = self.h5py()
         with h5py.File(self.folder / "other.h5", "w") as file:
             file["data"] = [float(i) for i in range(50)]

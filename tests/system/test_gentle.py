@@ -12,7 +12,7 @@ class Gentle(bench.BenchTest):
         super().setUp()
         self.finger = gripping.Finger(bench.SOFTGRIP, self.folder)
 
-    def test_grips_drawn_by_seed_keep_their_promises(self):
+    def test_random_grips_keep_the_limits_of_their_recipe(self):
         for seed in range(1000, 1030):
             trial = gripping.drawn(seed)
             with self.subTest(seed=seed, trial=trial):
@@ -28,7 +28,7 @@ class Gentle(bench.BenchTest):
         self.assertTrue(rows)
         return max(float(row["pressure_kpa"]) - self.finger.needs_kpa(float(row["displacement_mm"])) for row in rows)
 
-    def test_over_the_wire_a_part_in_the_way_of_the_approach_is_gripped_where_it_is(self):
+    def test_a_part_in_the_approach_path_is_gripped_within_the_pressure_limit(self):
         self.at_mm = 3
         truth = pathlib.Path(self.folder / "truth.csv")
         emulated = self.emulator("--object", f"{self.at_mm}:0.02", "--truth", truth)
@@ -46,7 +46,7 @@ class Gentle(bench.BenchTest):
         # has an additional tolerance of 2 kPa.
         self.assertLess(self.squeezed_kpa(truth), allowed_kpa + 2)
 
-    def test_a_hold_ends_when_its_release_is_asked_for(self):
+    def test_a_release_request_ends_the_hold(self):
         emulated = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulated.port))
         daemon.wait_for_state("idle")

@@ -23,7 +23,7 @@ class Hardened(unittest.TestCase):
     def read(self, program, *what):
         return subprocess.run(["readelf", "-W", *what, program], capture_output=True, text=True, check=True).stdout
 
-    def test_every_program(self):
+    def test_every_program_has_the_hardening_options(self):
         for program in PROGRAMS:
             with self.subTest(program=program.name):
                 symbols = self.read(program, "--dyn-syms")

@@ -60,7 +60,7 @@ class Health(bench.BenchTest):
         self.assertIn(left["suspects"][0]["words"], page)
         return left
 
-    def test_a_healthy_rig_is_steady(self):
+    def test_a_healthy_rig_is_reported_steady_without_alarms(self):
         fingers = self.health(self.healthy + self.later(Finger()), expect=0)
         for name in ("left", "right"):
             self.assertEqual(fingers[name]["state"], "steady")
@@ -68,7 +68,7 @@ class Health(bench.BenchTest):
             self.assertEqual(fingers[name]["grips"], 24)
             self.assertAlmostEqual(fingers[name]["numbers"]["gain_mm"]["value"], 32.09, delta=0.1)
 
-    def test_a_rig_with_a_thermometer_records_it_and_the_gain_is_compared_at_the_days_temperature(self):
+    def test_the_gain_is_compared_at_the_recorded_temperature(self):
         rig = working_life.Rig(bench.SOFTGRIP, self.folder)
         warmer = (0, 3, -2, 5, 1, -4, 4, 2, -1, 3, 6, -3)
         finger = Finger(gain_per_c=0.005)
@@ -81,7 +81,7 @@ class Health(bench.BenchTest):
         self.assertAlmostEqual(fingers["left"]["temperature_c"], 17, delta=0.2)
         self.assertIn("mm per °C", (self.folder / "out/health-left.html").read_text())
 
-    def test_what_both_fingers_share_is_a_warning_of_the_rig(self):
+    def test_a_change_of_both_fingers_is_a_warning_and_no_alarm(self):
         rig = working_life.Rig(bench.SOFTGRIP, self.folder)
         leaking = Finger(leak=0.03)
         runs = [rig.play(working_life.Grip(day(number, hour), 10 * number + hour, {"left": leaking, "right": leaking}))
@@ -95,29 +95,29 @@ class Health(bench.BenchTest):
         self.assertEqual(told["fingers"], ["left", "right"])
         self.assertTrue(any("show the same change" in warning for warning in result["warnings"]))
 
-    def test_a_leak_is_suspected(self):
+    def test_a_pressure_loss_is_attributed_to_a_leak(self):
         self.check_found(Finger(leak=0.04), "pressure_loss_kpa", 1, "leak")
 
-    def test_a_softer_finger_is_suspected(self):
+    def test_a_gain_loss_of_4_percent_is_attributed_to_ageing(self):
         self.check_found(Finger(gain=0.96), "gain_mm", -1, "ageing")
 
-    def test_a_sensor_that_was_knocked_is_suspected(self):
+    def test_a_sensor_offset_of_0_5_mm_is_attributed_to_sensor_drift(self):
         left = self.check_found(Finger(zero_mm=0.5), "zero_mm", 1, "sensor_drift")
         zero = next(one for one in left["alarms"] if one["number"] == "zero_mm")
         self.assertAlmostEqual(zero["change"], 0.5, delta=0.02)
 
-    def test_a_slower_valve_is_suspected(self):
+    def test_a_larger_lag_is_attributed_to_a_blocked_line_or_the_valve(self):
         left = self.check_found(Finger(valve_lag_s=0.1), "lag_s", 1, "blocked_line")
         self.assertIn("valve_lag", [one["id"] for one in left["suspects"]])
 
-    def test_what_was_mended_begins_the_charts_anew(self):
+    def test_a_repair_note_restarts_the_control_charts(self):
         runs = self.healthy + self.later(Finger(gain=0.96))
         notes = self.write("notes.yaml", f"notes:\n  - {{date: {day(8)[:10]}, finger: left, mended: finger replaced}}\n")
         fingers = self.health(runs, "--notes", notes, expect=0)
         self.assertEqual(fingers["left"]["state"], "steady")
         self.assertIn("finger replaced", (self.folder / "out/health-left.html").read_text())
 
-    def test_numbers_outlive_the_recordings_and_one_bad_recording_costs_itself_alone(self):
+    def test_scores_of_deleted_recordings_are_kept_and_bad_recordings_skipped(self):
         kept = self.folder / "kept"
         for run in self.healthy:
             shutil.copytree(run, kept / run.name)
@@ -136,7 +136,7 @@ class Health(bench.BenchTest):
         # The command must not score the same recording a second time.
         self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
 
-    def test_what_cannot_be_compared_is_refused(self):
+    def test_invalid_recordings_baselines_and_notes_are_rejected(self):
         self.softgrip("health", self.healthy[0], "--baseline", self.folder, expect=3)
         self.softgrip("health", self.folder, "--baseline", self.baseline, expect=3)
         notes = self.write("bad.yaml", "notes:\n  - {date: soon, mended: x}\n")
@@ -159,7 +159,7 @@ class Told(web.WebTest):
             "left": Finger(leak=0.05 if number >= 8 else 0), "right": Finger()})) for number in range(12)]
         self.softgrip("health", *runs, "--baseline", baseline, "--out", self.folder / "runs/health", expect=6)
 
-    def test_status_doctor_and_metrics_tell_the_last_result(self):
+    def test_status_doctor_and_metrics_report_the_last_health_result(self):
         self.start_rig()
         told = self.start_web()
         self.assertNotIn("health", self.softgrip("status").stdout)

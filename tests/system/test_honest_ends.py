@@ -22,7 +22,7 @@ class Validate(bench.BenchTest):
         screen.read()
         return screen.child.returncode, screen.raw.splitlines()
 
-    def test_on_a_terminal_what_failed_is_red_log_by_log(self):
+    def test_validate_prints_failed_logs_in_red_on_a_terminal(self):
         code, lines = self.on_terminal("0.4")
         self.assertEqual(code, 6)
         of = {name: next(line for line in lines if name in line) for name in (b"tp1 ", b"steps ", b"zhang2025 predicts")}

@@ -13,7 +13,7 @@ import foreign_files
 
 class Matrix(bench.BenchTest):
 
-    def test_every_file_is_imported_or_refused_as_the_page_says(self):
+    def test_every_file_is_imported_or_rejected_as_the_page_states(self):
         results = [(file, foreign_files.outcome(file, self.folder)) for file in foreign_files.files()]
         self.assertEqual([f"{file.name}: {wrong}" for file, (wrong, _, _) in results if wrong], [])
         self.assertGreaterEqual(len(results), 30)
@@ -29,7 +29,7 @@ class Import(bench.BenchTest):
     def imported(self, *arguments, expect=0):
         return self.softgrip("import", *arguments, expect=expect)
 
-    def test_without_a_terminal_the_options_are_said_and_nothing_is_written(self):
+    def test_import_without_a_terminal_prints_the_options_and_writes_nothing(self):
         path = self.foreign("names_psi.csv")
         done = self.imported(path, "--out", "log.csv", expect=2)
         self.assertIn("--time 'Time (s)' --command 'P set [psi]' --pressure 'P meas [psi]' --displacement 'Tip [mm]'",
@@ -50,7 +50,7 @@ class Import(bench.BenchTest):
             output = child.communicate(timeout=bench.PATIENCE_S)[0]
         return child.returncode, output
 
-    def test_on_a_terminal_it_asks(self):
+    def test_import_on_a_terminal_asks_for_confirmation(self):
         path = self.foreign("names_psi.csv")
         code, output = self.answered(b"n\n", path, "--out", "log.csv")
         self.assertEqual(code, 2, output)
@@ -60,7 +60,7 @@ class Import(bench.BenchTest):
         self.assertIn("Write log.csv with this assignment?", output)
         self.assertTrue((self.folder / "log.csv").exists())
 
-    def test_nobody_is_asked_to_agree_to_what_would_be_refused(self):
+    def test_import_does_not_ask_for_confirmation_of_a_file_that_it_rejects(self):
         path = self.write("no_unit.csv", "time,p_kPa,tip_mm\n" + "".join(f"{0.1 * i:.1f},{i},{0.5 * i}\n" for i in range(60)))
         code, output = self.answered(b"y\n", path, "--out", "log.csv")
         self.assertEqual(code, 3, output)
@@ -69,7 +69,7 @@ class Import(bench.BenchTest):
         self.assertNotIn("Write log.csv with this assignment?", output)
         self.imported(path, "--out", "log.csv", "--unit", "time=s", "--yes")
 
-    def test_the_mapping_that_is_kept_gives_the_same_bytes(self):
+    def test_the_stored_mapping_gives_the_same_log(self):
         path = self.foreign("volts.csv")
         self.imported(path, "--out", "a.csv", "--yes", "--scale", "command=25", "--scale", "displacement=-2.5", "--zero",
                       "displacement=first", "--from-s", "0.5")
@@ -81,7 +81,7 @@ class Import(bench.BenchTest):
         (self.folder / "c.yaml").write_text(kept.replace("scale:", "skale:"))
         self.assertIn("c.yaml:", self.imported(path, "--out", "c.csv", "--map", "c.yaml", expect=3).stderr)
 
-    def test_the_account_is_said_and_kept(self):
+    def test_the_row_counts_are_printed_and_stored(self):
         path = self.foreign("coarse_times.csv")
         done = self.imported(path, "--out", "log.csv", "--yes", "--missing", "888")
         account = "300 rows: 60 used, 240 left out (240 with the time of the previous row)"
@@ -95,11 +95,11 @@ class Import(bench.BenchTest):
         rows = json.loads(self.imported(path, "--out", "log.csv", "--yes", "--json").stdout)["logs"][0]["rows"]
         self.assertEqual(rows, {"file": 300, "used": 60, "joined": 0, "left_out": {"repeated_time": 240}})
 
-    def test_the_account_is_kept_when_no_row_is_lost(self):
+    def test_the_row_counts_are_stored_if_all_rows_are_used(self):
         self.imported(self.foreign("names_psi.csv"), "--out", "log.csv", "--yes")
         self.assertIn("# 300 rows: 300 used", (self.folder / "log.import.yaml").read_text())
 
-    def test_what_was_found_in_a_file_gives_the_same_bytes_from_the_mapping(self):
+    def test_the_stored_mapping_reproduces_logs_with_codes_and_options(self):
         for name, options in (("codes.csv", ()), ("two_times.csv", ()), ("bad_lines.csv", ("--skip-bad-lines",)),
                               ("fingers_right.csv", ("--channel", "right"))):
             path = self.foreign(name)
@@ -107,7 +107,7 @@ class Import(bench.BenchTest):
             self.imported(path, "--out", "b.csv", "--map", "a.import.yaml")
             self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes(), name)
 
-    def test_a_log_with_codes_is_not_taken_as_it_is(self):
+    def test_missing_value_codes_are_removed_from_a_log(self):
         rows = "".join(f"{0.01 * i:.2f},{30 - abs(i % 100 - 50) * 0.6},{999 if i % 50 == 7 else 0.2 * i % 7}\n"
                        for i in range(200))
         path = self.write("log.csv", "time_s,pressure_command_kpa,displacement_mm\n" + rows)
@@ -115,7 +115,7 @@ class Import(bench.BenchTest):
         self.assertIn("warning: 4 cells of 'displacement_mm' with 999", done.stderr)
         self.assertNotIn(",999\n", (self.folder / "clean.csv").read_text())
 
-    def test_several_files_go_into_a_folder_or_none_is_written(self):
+    def test_several_files_are_written_to_a_folder_all_or_none(self):
         good, also, broken = (self.foreign(name) for name in ("names_psi.csv", "packed.csv.gz", "word.csv"))
         self.imported(good, also, "--out", "log.csv", "--yes", expect=2)
         self.imported(good, broken, "--out", "logs/", "--yes", expect=3)
@@ -124,7 +124,7 @@ class Import(bench.BenchTest):
         self.assertEqual(sorted(path.name for path in (self.folder / "logs").iterdir()),
                          ["names_psi.csv", "names_psi.import.yaml", "packed.csv", "packed.import.yaml"])
 
-    def test_what_is_refused_on_the_command_line(self):
+    def test_invalid_import_options_are_rejected(self):
         path = self.foreign("names_psi.csv")
         for arguments in (("--unit", "pressure"), ("--scale", "colour=2"), ("--scale", "pressure=0"),
                           ("--zero", "pressure=last"), ("--separator", "dots"), ("--rate-hz", "nan"),
@@ -138,7 +138,7 @@ class Import(bench.BenchTest):
         self.assertIn("no column 'Zeit'", done.stderr)
         self.assertEqual(list(self.folder.glob("log*")), [])
 
-    def test_other_commands_say_which_import_would_do(self):
+    def test_other_commands_print_the_required_import_command(self):
         path = self.foreign("names_psi.csv")
         for command in (("identify", "--out", "o", "--data", path), ("simulate", "--model", "config/models/bench_twin.yaml",
                         "--out", "o.csv", "--input", path), ("plot", path, "--out", "o.svg")):
@@ -149,13 +149,13 @@ class Import(bench.BenchTest):
                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         self.softgrip("plot", "names_psi_log.csv", "--out", "o.svg")
 
-    def test_other_commands_ask_for_one_of_several_sheets(self):
+    def test_other_commands_require_the_choice_of_one_sheet(self):
         path = self.foreign("two_sheets.xlsx")
         done = self.softgrip("identify", "--out", "o", "--data", path, expect=3)
         self.assertIn(f"{path}: 2 sheets have rows of numbers: 'Monday', 'Tuesday': softgrip import {path} --sheet NAME "
                       "--out two_sheets_log.csv", done.stderr)
 
-    def test_a_log_comes_back_from_mcap(self):
+    def test_a_log_exported_as_mcap_is_imported_unchanged(self):
         self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
                       "--rate-hz", "50")
         self.softgrip("export", "own.csv", "--out", "own.mcap")
@@ -164,7 +164,7 @@ class Import(bench.BenchTest):
         self.imported("own.mcap", "--out", "back.csv", "--yes")
         self.assertEqual((self.folder / "own.csv").read_bytes(), (self.folder / "back.csv").read_bytes())
 
-    def test_what_was_imported_can_be_identified(self):
+    def test_an_imported_log_has_the_validation_error_of_the_original(self):
         self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
                       "--rate-hz", "50")
         rows = (self.folder / "own.csv").read_text().splitlines()

@@ -57,7 +57,7 @@ class Terminal:
 class Init(bench.BenchTest):
     OPTIONS = ("--board", "adam-6024", "--address", "127.0.0.1:1502")
 
-    def test_at_a_terminal_a_mistyped_answer_is_asked_again(self):
+    def test_an_invalid_answer_repeats_the_question_on_a_terminal(self):
         asked = Terminal(self, "init", "config/mine.yaml")
         asked.answer("map", "adam-6042")
         self.assertIn("did you mean adam-6024?", asked.answer("map", "adam-6024"))
@@ -81,28 +81,28 @@ class Init(bench.BenchTest):
         self.assertIn("pressure_max_kpa: 50", text)
         self.assertIn("map: boards/adam-6024.yaml", text)
 
-    def test_by_options_without_a_terminal(self):
+    def test_options_without_a_terminal_give_a_valid_rig_file(self):
         self.softgrip("init", "config/mine.yaml", *self.OPTIONS)
         done = self.softgrip("check", "config/mine.yaml")
         self.assertEqual(done.stderr, "")
 
-    def test_what_has_no_usual_value_must_be_given(self):
+    def test_an_option_without_a_default_value_is_required(self):
         done = self.softgrip("init", "mine.yaml", "--board", "adam-6024", expect=2)
         self.assertIn("--address is required", done.stderr)
         self.assertFalse((self.folder / "mine.yaml").exists())
 
-    def test_a_file_that_is_there_is_never_overwritten(self):
+    def test_an_existing_file_is_not_overwritten(self):
         before = (self.folder / "config/rig.yaml").read_bytes()
         done = self.softgrip("init", "config/rig.yaml", *self.OPTIONS, expect=5)
         self.assertIn("already exists", done.stderr)
         self.assertEqual((self.folder / "config/rig.yaml").read_bytes(), before)
 
-    def test_a_wrong_option_writes_nothing(self):
+    def test_an_invalid_option_writes_no_file(self):
         done = self.softgrip("init", "mine.yaml", *self.OPTIONS, "--pressure-max-kpa", "lots", expect=2)
         self.assertIn("--pressure-max-kpa: `lots`", done.stderr)
         self.assertFalse((self.folder / "mine.yaml").exists())
 
-    def test_what_it_writes_runs_against_the_emulator(self):
+    def test_the_written_rig_file_runs_with_the_emulator(self):
         self.softgrip("init", "config/mine.yaml", *self.OPTIONS)
         emulated = self.emulator("--rig", self.folder / "config/mine.yaml", "--object", "stone", board=None)
         rig = self.folder / "config/mine.yaml"

@@ -74,23 +74,23 @@ class Investigation(bench.BenchTest):
         return self.write("config/simulated.yaml", text.replace(stone, about).replace(
             f"model: {GIVEN.removeprefix('config/')}", f"model: {FINGER.removeprefix('config/')}", 1))
 
-    def test_a_finger_that_touches_something_ends_it(self):
+    def test_a_contact_ends_the_investigation(self):
         rig = self.simulated("\n        object: {position_mm: 12, yielding: 0.1}")
         self.check(self.investigated("--rig", rig, "--rig-channel", "left"), "contact",
                    r"the finger touched an object: the finger stopped at 1[2-5](\.\d)? mm, .* mm before its free-motion displacement")
 
-    def test_the_same_finger_with_a_free_way_is_not_stopped(self):
+    def test_a_finger_without_contact_is_not_stopped(self):
         told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None, timeout_s=850)
         self.assertNotIn(told["end"], ("contact", "not_as_asked", "failed", "stopped"), told)
         self.assertEqual(told["logs"][1]["path"], "found/step_1/recording/run.csv")
 
-    def test_over_modbus_in_real_time_it_is_noticed_too(self):
+    def test_a_contact_on_a_modbus_rig_ends_the_investigation(self):
         rig = self.emulator("--model", self.folder / FINGER, "--object", "stone")
         self.check(self.investigated("--rig", self.rig(rig.port), "--rig-channel", "left", "--yes"), "contact",
                    "the finger touched an object")
         self.assertLess(max(rig.pressures_kpa()), 5, "and it is vented")
 
-    def test_a_rig_that_plays_something_else_ends_it(self):
+    def test_a_rig_that_deviates_from_the_command_ends_the_investigation(self):
         for change, why in (("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",
                              "the rig did not run the requested experiment: the command went to 30 instead of 45 kPa"),
                             ("lambda rows: rows[:len(rows) * 2 // 3]", r"it took [\d.]+ instead of [\d.]+ s"),

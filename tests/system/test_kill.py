@@ -12,7 +12,7 @@ WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
 
 
 class Kill(bench.BenchTest):
-    def test_the_board_vents_and_the_recording_opens(self):
+    def test_the_board_vents_after_a_kill_and_the_recording_is_readable(self):
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")
@@ -39,7 +39,7 @@ class Kill(bench.BenchTest):
         self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", recording,
                       "--channel", "left", "--out", self.folder / "again.csv")
 
-    def test_a_new_daemon_starts_vented_and_still(self):
+    def test_a_new_daemon_after_a_kill_is_vented_and_idle(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -54,7 +54,7 @@ class Kill(bench.BenchTest):
             time.sleep(0.05)
         self.assertEqual(again.status()["state"], "idle")
 
-    def test_after_a_free_stroke_the_next_daemon_grips_again(self):
+    def test_a_new_daemon_grips_again_after_a_free_stroke(self):
         """Moves the finger once without a part. A new daemon does not know the creep that an earlier pressure has
         caused. The daemon estimates this creep from the stroke."""
         self.creep_faster()
@@ -80,7 +80,7 @@ class Kill(bench.BenchTest):
         again.wait_for_event("sequence_finished", code="done")
         self.assertEqual(grip(), "HOLDING")
 
-    def test_at_random_moments(self):
+    def test_kills_at_random_times_leave_a_vented_board_and_a_valid_recording(self):
         """Runs a few kills at random times. scripts/kill_nine.sh runs a hundred kills."""
         seed = random.SystemRandom().randrange(1 << 31)
         print(f"seed {seed}")

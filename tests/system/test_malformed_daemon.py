@@ -80,7 +80,7 @@ class Commands(bench.BenchTest):
         self.assertNotRegex(done.stderr, r"json\.exception|terminate|basic_string")
         self.assertEqual(done.stdout, "")
 
-    def test_every_command_says_so(self):
+    def test_every_command_reports_a_malformed_reply_with_exit_code_4(self):
         daemon = fake(self, lambda request: said)
         for name, said in {**DAMAGED, ENDLESS: None}.items():
             for line in COMMANDS if name != ENDLESS else ("status", "start pick_stone"):
@@ -88,7 +88,7 @@ class Commands(bench.BenchTest):
                     self.check_end(line)
         self.assertGreater(daemon.connections, len(COMMANDS))
 
-    def test_behind_a_good_hello(self):
+    def test_a_malformed_reply_to_a_start_stops_the_sequence(self):
         """Tests a malformed reply to a start. The sequence may have started nevertheless. The client must open a new
         connection and stop the sequence by the id of its start."""
         said = b""
@@ -109,7 +109,7 @@ class Commands(bench.BenchTest):
                 start, stop = (r for r in daemon.requests if r["command"] in ("start", "stop"))
                 self.assertEqual(stop["start_id"], start["start_id"])
 
-    def test_events_of_a_start_that_is_followed(self):
+    def test_malformed_events_after_a_start_stop_the_sequence(self):
         def answer(request):
             if request["command"] == "hello":
                 return well(request, **HELLO)
@@ -137,7 +137,7 @@ class Gateways(bench.BenchTest):
                 bench.wait_for("two new connections", lambda: self.daemon.connections >= before + 2)
                 well_without_a_daemon()
 
-    def test_softgrip_web(self):
+    def test_softgrip_web_treats_a_malformed_line_as_a_missing_daemon(self):
         gateway = web.Web(self.folder)
         self.processes.append(gateway)
 
@@ -149,7 +149,7 @@ class Gateways(bench.BenchTest):
         self.check_each(check)
         self.assertEqual(gateway.end(), 0)
 
-    def test_softgrip_plc(self):
+    def test_softgrip_plc_treats_a_malformed_line_as_a_missing_daemon(self):
         gateway = plc.Plc(self.folder)
         self.processes.append(gateway)
         master = plc.Master(gateway)

@@ -23,7 +23,7 @@ class Masters(bench.BenchTest):
         path.write_text(text)
         return path
 
-    def test_a_second_daemon_behind_another_socket_is_refused(self):
+    def test_a_second_daemon_with_another_socket_is_rejected(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -33,7 +33,7 @@ class Masters(bench.BenchTest):
         self.assertIn(f"another softgrip program drives this board (process {daemon.child.pid})", second.errors())
         self.assertEqual(daemon.status()["state"], "idle")
 
-    def test_a_socket_file_that_was_removed_makes_no_room_for_another(self):
+    def test_a_removed_socket_file_does_not_admit_a_second_daemon(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -44,7 +44,7 @@ class Masters(bench.BenchTest):
         self.assertIn("another softgrip program", second.errors())
         self.assertEqual(daemon.status()["state"], "idle")
 
-    def test_a_lock_file_that_was_removed_makes_no_room_for_another(self):
+    def test_a_removed_lock_file_does_not_admit_a_second_daemon(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -56,13 +56,13 @@ class Masters(bench.BenchTest):
         self.assertEqual(second.wait(), 4)
         self.assertIn(f"another softgrip program drives this board (process {daemon.child.pid})", second.errors())
 
-    def test_a_killed_master_leaves_the_board_to_the_next(self):
+    def test_a_new_daemon_can_use_the_board_after_a_kill(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         self.daemon(rig).kill()
         self.assertEqual(self.daemon(rig).wait_for_state("idle")["state"], "idle")
 
-    def test_calibration_and_safe_outputs_keep_off(self):
+    def test_doctor_and_safe_outputs_do_not_use_an_occupied_board(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
@@ -73,7 +73,7 @@ class Masters(bench.BenchTest):
         self.assertEqual(safe.wait(), 5)
         self.assertIn("another softgrip program", safe.output())
 
-    def test_every_signal_that_ends_it_ends_it_in_order(self):
+    def test_every_terminating_signal_vents_and_exits_with_code_0(self):
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)
         for number in ENDING:
@@ -85,7 +85,7 @@ class Masters(bench.BenchTest):
                 self.assertEqual(daemon.end(number), 0, daemon.errors())
                 self.assertEqual(max(emulator.commands_kpa()), 0)
 
-    def test_a_terminal_cannot_stop_it(self):
+    def test_terminal_stop_signals_do_not_stop_the_daemon(self):
         emulator = self.emulator()
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")
@@ -113,7 +113,7 @@ class OtherUsers(bench.BenchTest):
         return subprocess.run([bench.SOFTGRIPD, "--config", self.rig_path, "--safe-outputs"], capture_output=True,
                               text=True, timeout=bench.PATIENCE_S, check=False)
 
-    def test_the_daemon_starts_and_says_who_is_in_the_way(self):
+    def test_the_daemon_starts_and_names_the_user_who_holds_the_lock_name(self):
         for how, backlog in self.HOLDERS.items():
             with self.subTest(holder=how):
                 holder = other_user.OtherUser(self, self.name, backlog)
@@ -126,7 +126,7 @@ class OtherUsers(bench.BenchTest):
                 self.assertEqual(daemon.end(), 0)
                 holder.end()
 
-    def test_two_daemons_are_kept_apart_all_the_same(self):
+    def test_a_second_daemon_is_rejected_although_another_user_holds_the_name(self):
         other_user.OtherUser(self, self.name)
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
@@ -138,7 +138,7 @@ class OtherUsers(bench.BenchTest):
         self.assertIn("another softgrip program", self.softgrip("doctor", "--rig", second, expect=6).stdout)
         self.assertEqual(daemon.status()["state"], "idle")
 
-    def test_after_a_kill_the_board_is_vented(self):
+    def test_safe_outputs_vent_after_a_kill_although_the_name_is_held(self):
         for how, backlog in self.HOLDERS.items():
             with self.subTest(holder=how):
                 daemon = self.daemon(self.rig_path)
@@ -153,7 +153,7 @@ class OtherUsers(bench.BenchTest):
                 self.assertEqual(max(self.board.commands_kpa()), 0)
                 holder.end()
 
-    def test_another_user_behind_the_rigs_socket_does_not_keep_the_pressure(self):
+    def test_safe_outputs_vent_although_another_user_holds_the_socket(self):
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
         daemon.start("pick_stone")
@@ -166,7 +166,7 @@ class OtherUsers(bench.BenchTest):
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
-    def test_a_daemon_that_stands_still_does_not_keep_the_pressure(self):
+    def test_safe_outputs_vent_although_a_stopped_daemon_holds_the_board(self):
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
         daemon.start("pick_stone")
@@ -178,7 +178,7 @@ class OtherUsers(bench.BenchTest):
         self.assertEqual(max(self.board.commands_kpa()), 0)
         daemon.kill()
 
-    def test_another_user_is_kept_off_a_board_that_root_drives(self):
+    def test_a_daemon_of_another_user_is_rejected_while_root_uses_the_board(self):
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
         self.folder.chmod(0o777)

@@ -36,7 +36,7 @@ class Mbpoll(bench.BenchTest):
         bench.wait_for("the finger", lambda: emulator.status()["channels"][0]["displacement_mm"] > 10)
         self.assertGreater(self.registers(emulator.port, "3", 0, 1)[0], one_volt + 10 / 50 * 10 / 20 * 65535 - 700)
 
-    def test_addresses_that_are_not_there_are_refused(self):
+    def test_nonexistent_addresses_are_rejected(self):
         emulator = self.emulator()
         self.assertIn("Illegal data address", self.poll(emulator.port, "-t", "4", "-r", "100", "-c", "1", "127.0.0.1",
                                                         expect=1))

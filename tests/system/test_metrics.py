@@ -56,12 +56,12 @@ class Metrics(web.WebTest):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done.stdout + done.stderr
 
-    def test_the_rules_are_rules_and_go_off_when_they_should(self):
+    def test_the_alert_rules_are_valid_and_pass_their_tests(self):
         self.assertIn("15 rules found", self.promtool("check", "rules", bench.SOURCE / "config/monitoring/alerts.yml"))
         self.promtool("test", "rules", bench.SOURCE / "tests/monitoring/alerts_test.yaml")
         self.promtool("check", "config", "--syntax-only", bench.SOURCE / "config/monitoring/prometheus.yml")
 
-    def test_rules_and_dashboard_name_what_is_told(self):
+    def test_rules_dashboard_and_page_name_only_existing_metrics(self):
         self.start_rig()
         results = self.folder / "runs/health"
         results.mkdir(parents=True)
@@ -79,7 +79,7 @@ class Metrics(web.WebTest):
         self.assertEqual(set(bench.re.findall(r"`(softgrip_\w+)`", page)) ^ (names | {"softgrip_emergency_stop",
                          "softgrip_digital_lines_lost"}), set())
 
-    def test_a_scraped_value_is_what_happened(self):
+    def test_scraped_metrics_equal_the_events_of_the_daemon(self):
         self.start_rig()
         told = self.start_web()
         rules = shutil.copy(bench.SOURCE / "config/monitoring/alerts.yml", self.folder)

@@ -8,7 +8,7 @@ import bench
 
 
 class Morning(unittest.TestCase):
-    def test_the_page_says_what_the_screen_says(self):
+    def test_the_page_shows_the_current_output_of_the_session(self):
         played = subprocess.run([sys.executable, bench.SOURCE / "scripts/morning.py", "--build", bench.BUILD,
                                  "--check", bench.SOURCE / "docs/how-to/a-morning.md"],
                                 capture_output=True, text=True, timeout=170)

@@ -90,19 +90,19 @@ class Paused(MotionTest):
         self.check_end(name, child, code)
         self.check_vented(samples)
 
-    def test_calibrate(self):
+    def test_calibrate_raises_no_pressure_after_a_pause(self):
         self.check("calibrate")
 
-    def test_doctor(self):
+    def test_doctor_raises_no_pressure_after_a_pause(self):
         self.check("doctor")
 
-    def test_run(self):
+    def test_run_raises_no_pressure_after_a_pause(self):
         self.check("run")
 
-    def test_baseline(self):
+    def test_baseline_raises_no_pressure_after_a_pause(self):
         self.check("baseline")
 
-    def test_calibrate_while_it_asks(self):
+    def test_calibrate_raises_no_pressure_after_a_pause_before_its_question(self):
         child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))
         # Standard input is closed. The pause occurs while the finger is pressurised, before the command asks its
         # question.
@@ -130,15 +130,15 @@ class Silent(MotionTest):
         vented = left.index(min(left))
         self.assertLessEqual(max(left[vented:]), NOISE_KPA, left[:200])
 
-    def test_calibrate_without_its_requests(self):
+    def test_calibrate_raises_no_pressure_after_lost_requests(self):
         _, samples = self.check("calibrate", "requests_lost", 4)
         self.check_nothing_rises_again(samples)
 
-    def test_doctor_without_its_requests(self):
+    def test_doctor_raises_no_pressure_after_lost_requests(self):
         _, samples = self.check("doctor", "requests_lost", 6)
         self.check_nothing_rises_again(samples)
 
-    def test_calibrate_without_the_replies(self):
+    def test_calibrate_raises_no_pressure_while_replies_are_lost(self):
         """Tests a connection on which the requests arrive and the replies are lost. The board keeps its outputs. They
         may stay at the last command but must not rise."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
@@ -149,7 +149,7 @@ class Silent(MotionTest):
 class Blind(MotionTest):
     """Tests a displacement sensor that fails while its finger moves."""
 
-    def test_nothing_rises_without_the_sensor(self):
+    def test_calibrate_raises_no_pressure_without_the_sensor(self):
         self.board.ask("fault blind")
         for what in (("--move",), ("--valve", "--move"), ("--dead-zone", "--move"), ("--sensor", "--move")):
             with self.subTest(what):
@@ -173,7 +173,7 @@ class Blind(MotionTest):
         self.assertEqual(findings["motion left"]["text"], "not judged: see `sensor left`")
         self.assertEqual(findings["finger right"]["verdict"], "ok")
 
-    def test_a_cable_that_comes_out_on_the_way_ends_the_motion(self):
+    def test_a_sensor_failure_during_the_motion_ends_calibrate_and_vents(self):
         child = self.begin((*CALIBRATE, "--valve", "--move", "--settle-s", "1"))
         self.wait_for_pressure(child, 12)  # the pressure is rising to 40 kPa
         self.board.ask("fault blind")
@@ -183,7 +183,7 @@ class Blind(MotionTest):
         self.assertLess(max(sample[0] for sample in samples), 30)
         self.assertEqual(self.board.commands_kpa(), [0, 0])
 
-    def test_by_hand_the_target_may_be_out_of_range_on_its_way(self):
+    def test_calibrate_without_motion_reports_the_number_of_invalid_readings(self):
         self.board.ask("fault blind")
         done = self.softgrip("calibrate", "--rig", self.rig_path, *CALIBRATE[1:], "--sensor", "--gauge-mm", "1", "20",
                              expect=6)

@@ -70,7 +70,7 @@ class Page(web.WebTest):
         seen.type_in("token", token)
         seen.press(browser.ENTER)
 
-    def test_a_grip_that_loses_its_part_and_one_that_is_stopped(self):
+    def test_the_page_shows_a_lost_part_and_a_stopped_grip(self):
         seen = self.browse(self.start_web())
         seen.wait_for_state("idle")
         seen.wait("sequences", lambda: "pick_stone" in seen.text("sequence"))
@@ -102,14 +102,14 @@ class Page(web.WebTest):
         self.assertGreater(points, 10)
         self.assertEqual(seen.complaints(), [])
 
-    def test_a_refusal_is_told(self):
+    def test_the_page_shows_why_a_command_is_refused(self):
         seen = self.browse(self.start_web())
         seen.wait_for_state("idle")
         seen.click("stop")
         seen.wait("the refusal", lambda: seen.text("said").startswith("stop: "))
         seen.wait("the refusal", lambda: "accepted" not in seen.text("said") and len(seen.text("said")) > 12)
 
-    def test_it_outlives_the_daemon_and_softgrip_web(self):
+    def test_the_page_reconnects_after_restarts_of_daemon_and_softgrip_web(self):
         told = self.start_web()
         seen = self.browse(told)
         seen.wait_for_state("idle")
@@ -128,7 +128,7 @@ class Page(web.WebTest):
         self.processes.append(again)
         seen.wait_for_state("idle")
 
-    def test_another_page_can_neither_command_nor_see(self):
+    def test_a_page_of_another_site_can_neither_command_nor_read(self):
         told = self.start_web(access="without_token: operate")
         seen = self.browse(told)
         seen.wait_for_state("idle")
@@ -153,7 +153,7 @@ class Page(web.WebTest):
                                 "sequence: 'pick_stone'})}).then((a) => done(a.status))")
         self.assertEqual(status, 200)
 
-    def test_who_only_looks_has_no_buttons_and_may_do_nothing(self):
+    def test_a_read_only_user_has_no_buttons_and_cannot_command(self):
         seen = self.browse(self.start_web(access="without_token: none"))
         seen.wait_for_state("log in first")
         self.assertFalse(seen.find("main").is_displayed())
@@ -173,7 +173,7 @@ class Page(web.WebTest):
         seen.wait("the buttons", lambda: "STOP" in seen.visible_buttons())
         self.assertIn("VENT", seen.visible_buttons())
 
-    def test_a_session_ends(self):
+    def test_a_session_ends_after_the_configured_time(self):
         seen = self.browse(self.start_web(access="without_token: none\n  session_s: 10"))
         seen.wait_for_state("log in first")
         self.log_in(seen, web.OPERATE)
@@ -181,7 +181,7 @@ class Page(web.WebTest):
         seen.wait_for_state("log in first")
         self.assertEqual([b for b in seen.visible_buttons() if b != "Log in"], [])
 
-    def test_it_can_be_read_and_worked_by_everybody(self):
+    def test_the_page_meets_contrast_size_and_keyboard_requirements(self):
         pictures = pathlib.Path(os.environ.get("SOFTGRIP_PICTURES", self.folder))
         seen = self.browse(self.start_web())
         seen.wait_for_state("idle")

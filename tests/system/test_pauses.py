@@ -91,16 +91,16 @@ class Pauses(bench.BenchTest):
             with self.subTest(phase=phase, what=what, for_s=for_s):
                 self.check(phase, what, for_s, expected)
 
-    def test_while_closing(self):
+    def test_no_pressure_rises_after_a_pause_while_closing(self):
         self.check_phase("closing")
 
-    def test_while_holding(self):
+    def test_no_pressure_rises_after_a_pause_while_holding(self):
         self.check_phase("holding")
 
-    def test_while_releasing(self):
+    def test_no_pressure_rises_after_a_pause_while_releasing(self):
         self.check_phase("releasing")
 
-    def test_a_sequence_whose_last_step_ends_in_a_pause_is_faulted(self):
+    def test_a_pause_during_the_last_step_ends_the_sequence_as_faulted(self):
         self.start_rig()
         path = self.write("config/sequences/brief.yaml",
                           "name: brief\nsteps:\n  - move: {pressure_kpa: 10, duration_s: 1}\n")
@@ -113,7 +113,7 @@ class Pauses(bench.BenchTest):
         self.assertEqual(waiting.returncode, 6, said)
         self.softgripd.wait_for_event("sequence_finished", code="faulted")
 
-    def test_patience_beyond_the_watchdog_is_refused(self):
+    def test_a_bus_down_time_longer_than_the_watchdog_is_rejected(self):
         rig = self.rig(1502, ((r"bus_down_cycles: \d+", "bus_down_cycles: 90"),))
         done = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)

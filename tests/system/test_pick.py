@@ -51,7 +51,7 @@ class Pick(bench.BenchTest):
         self.assertIn("HOLDING", picture)
         self.assertIn("</svg>", picture)
 
-    def test_nothing_there_is_no_part(self):
+    def test_a_missing_part_is_reported_as_no_part(self):
         daemon = self.run_pick()
         end = daemon.wait_for_event("sequence_finished")
         self.assertEqual(end["code"], "failed")
@@ -61,7 +61,7 @@ class Pick(bench.BenchTest):
         self.assertEqual(daemon.results(), ["NO PART", "NO PART"])
         bench.wait_for("vented valves", lambda: max(self.rig_process.commands_kpa()) < 0.1)
 
-    def test_a_stone_that_is_pulled_out_is_part_lost(self):
+    def test_a_removed_stone_is_reported_as_part_lost(self):
         daemon = self.run_pick("--object", "stone")
         daemon.wait_for_event("step_started", code="2")
         daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
@@ -73,7 +73,7 @@ class Pick(bench.BenchTest):
             self.assertEqual(self.results_told(daemon, channel)[:2], ["HOLDING", "PART LOST"])
         self.assertEqual(daemon.results(), ["PART LOST", "PART LOST"])
 
-    def test_start_waits_for_the_end_and_says_how_it_was(self):
+    def test_start_with_wait_prints_the_result_and_sets_the_exit_code(self):
         self.rig_process = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(self.rig_process.port))
         daemon.wait_for_state("idle")

@@ -36,27 +36,27 @@ class Virtual(bench.BenchTest):
         squares = [(float(row["reference_mm"]) - float(row["displacement_mm"])) ** 2 for row in rows]
         return math.sqrt(sum(squares) / len(squares))
 
-    def test_the_published_model_is_tracked_three_times_better_than_by_pid_alone(self):
+    def test_planned_tracking_of_zhang2025_is_3_times_better_than_pid_alone(self):
         planned, alone = self.tracking_rmse_mm(), self.tracking_rmse_mm(*PID_ALONE)
         print(f"zhang2025: planned {planned:.3f} mm, PID alone {alone:.3f} mm")
         self.assertGreater(alone, 3 * planned)
 
-    def test_the_twin_is_tracked_three_times_better_than_by_pid_alone(self):
+    def test_planned_tracking_of_bench_twin_is_3_times_better_than_pid_alone(self):
         planned, alone = self.tracking_rmse_mm(*TWIN), self.tracking_rmse_mm(*TWIN, (PLANNED, "feedforward: none"))
         print(f"bench_twin: planned {planned:.3f} mm, PID alone {alone:.3f} mm")
         self.assertGreater(alone, 3 * planned)
 
-    def test_it_repeats_its_bytes(self):
+    def test_planned_runs_in_virtual_time_write_the_same_bytes(self):
         for name in "ab":
             self.play("config/rig_planned.yaml", name)
         for file in ("run.csv", "run.json"):
             self.assertEqual(*((self.folder / name / file).read_bytes() for name in "ab"))
 
-    def test_a_grip_of_nothing_backs_off_and_says_no_part(self):
+    def test_a_planned_grip_without_a_part_is_reported_as_no_part(self):
         done = self.play("config/rig_planned.yaml", "r", sequence="pick_stone", expect=6)
         self.assertIn("left: NO PART", done.stdout)
 
-    def test_what_is_out_of_reach_is_said_and_what_is_too_long_is_refused(self):
+    def test_too_fast_motion_gives_a_warning_and_too_long_motion_is_rejected(self):
         fast = self.write("fast.yaml", "name: fast\nsteps:\n  - move: {displacement_mm: 20, duration_s: 0.1}\n")
         done = self.softgrip("check", "config/rig_planned.yaml", fast)
         self.assertRegex(done.stderr, r"fast.yaml:3:\d+: warning: step 'move': the model of channel 'left' cannot follow")
@@ -69,7 +69,7 @@ class Virtual(bench.BenchTest):
         self.assertIn("600 s of motion", done.stderr)
         self.assertFalse((self.folder / "e").exists())
 
-    def test_a_model_without_an_inverse_is_pointed_to_it(self):
+    def test_the_error_for_a_model_without_an_inverse_suggests_planned(self):
         done = self.softgrip("check", self.rig_with((PLANNED, "feedforward: full_model")), expect=3)
         self.assertIn("use feedforward `planned`, which needs no inverse", done.stderr)
 
@@ -95,7 +95,7 @@ class Served(bench.BenchTest):
         self.softgrip("vent")
         self.softgripd.wait_for_state("idle")
 
-    def test_a_vent_waits_for_no_plan_and_abandons_it(self):
+    def test_a_vent_aborts_the_computation_of_a_plan(self):
         long = ("name: long\nsteps:\n  - move: {displacement_mm: 6, duration_s: 1}\n"
                 "  - track: {mean_mm: 13, amplitude_mm: 7, frequency_hz: 0.05, cycles: 29}\n")
         lines = bench.Lines(self.softgripd.socket_path)

@@ -36,21 +36,21 @@ class PlantFaults(bench.BenchTest):
         self.assertEqual(daemon.results(), ["ERROR", "ERROR"])
         return daemon
 
-    def test_a_stuck_sensor_is_noticed_while_the_command_moves(self):
+    def test_a_stuck_sensor_causes_fault_f205_while_the_command_changes(self):
         self.check_latches("stuck", ("F205",), "left")
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
 
-    def test_a_jumping_sensor(self):
+    def test_a_sensor_that_jumps_by_15_mm_causes_fault_f204(self):
         # The sensor jumps by 15 mm. At 100 mm/s, a finger needs 15 cycles for this distance, so the daemon rejects the
         # reading for 15 cycles.
         self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
                                                            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
 
-    def test_a_sensor_that_jumps_ten_times_a_second(self):
+    def test_a_sensor_that_jumps_ten_times_per_second_causes_fault_f204(self):
         # Each jump of 5 mm is slower than max_speed_mm_per_s, so the daemon rejects no single reading.
         self.check_latches("unsteady", ("F204",), "right")
 
-    def test_where_that_is_no_fault_it_is_told(self):
+    def test_an_unsteady_reading_can_be_configured_as_a_warning(self):
         daemon = self.tracking(((r"unsteady_is_fault: true", "unsteady_is_fault: false"),
                                 (r"displacement_margin_mm: 2", "displacement_margin_mm: 20")))
         self.emulated.ask("fault unsteady")
@@ -59,7 +59,7 @@ class PlantFaults(bench.BenchTest):
         self.emulated.ask("clear unsteady")
         daemon.wait_for_event("reading_steady", channel="right")
 
-    def test_a_part_that_slips_is_no_unsteady_sensor(self):
+    def test_a_slipping_part_is_not_reported_as_an_unsteady_reading(self):
         emulated = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulated.port))
         daemon.wait_for_state("idle")
@@ -74,16 +74,16 @@ class PlantFaults(bench.BenchTest):
         self.assertNotIn("reading_unsteady", kinds)
         self.assertNotIn("fault_latched", kinds)
 
-    def test_a_blind_sensor(self):
+    def test_a_sensor_out_of_range_causes_fault_f202_or_f203(self):
         self.check_latches("blind", ("F202", "F203"), "right")
 
-    def test_outputs_that_do_not_follow(self):
+    def test_ignored_writes_cause_fault_f301_or_f302(self):
         self.check_latches("ignored", ("F301", "F302"), None)
 
-    def test_a_leaking_line_where_the_pressure_is_measured(self):
+    def test_a_leaking_line_with_measured_pressure_causes_fault_f207(self):
         self.check_latches("leak", ("F207",), "left")
 
-    def test_a_blocked_line_where_the_pressure_is_measured(self):
+    def test_a_blocked_line_with_measured_pressure_causes_fault_f207(self):
         self.check_latches("blocked", ("F207",), "left")
 
     # Without a measured pressure, the model is the only way to detect a leak or a lost pressure.

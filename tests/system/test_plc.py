@@ -27,7 +27,7 @@ class Gateway(bench.BenchTest):
         master.wait("state", plc.IDLE)
         return master
 
-    def test_a_grip_with_a_squeeze_of_its_own(self):
+    def test_a_plc_grip_uses_the_requested_gripping_pressure(self):
         master = self.master(self.gateway())
         self.assertEqual(master.read("map_version"), 1)
         self.assertEqual(master.command(plc.START, recipe=1, squeeze=425), (plc.ACCEPTED, 0))
@@ -44,7 +44,7 @@ class Gateway(bench.BenchTest):
         master.wait("state", plc.IDLE)
         self.assertEqual(len(plc.started(self.softgripd)), 1)
 
-    def test_a_counter_that_is_written_again_starts_nothing(self):
+    def test_a_repeated_counter_value_starts_no_sequence(self):
         master = self.master(self.gateway())
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
         for _ in range(50):
@@ -56,7 +56,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(len(plc.started(self.softgripd)), 1)
         self.assertEqual(self.softgripd.status()["state"], "idle")
 
-    def test_an_old_block_from_a_second_connection_starts_nothing(self):
+    def test_an_old_command_block_of_a_second_client_starts_no_sequence(self):
         gateway = self.gateway()
         master = self.master(gateway)
         second = plc.Master(gateway, synchronise=False)
@@ -80,7 +80,7 @@ class Gateway(bench.BenchTest):
         second.synchronise()
         self.assertEqual(second.command(plc.START, recipe=1), (plc.ACCEPTED, 0))
 
-    def test_the_late_rest_of_a_half_sent_block_starts_nothing(self):
+    def test_the_late_rest_of_an_incomplete_request_starts_no_sequence(self):
         gateway = self.gateway()
         master = self.master(gateway)
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
@@ -105,7 +105,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.read("done_counter"), master.counter)
         self.assertEqual(len(plc.started(self.softgripd)), 1)
 
-    def test_two_masters_do_not_write_one_command_together(self):
+    def test_registers_of_two_clients_are_not_combined_into_one_command(self):
         gateway = self.gateway()
         master = self.master(gateway)
         second = self.master(gateway)
@@ -117,7 +117,7 @@ class Gateway(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         self.assertEqual(len(plc.started(self.softgripd)), 1)
 
-    def test_what_is_refused_says_why(self):
+    def test_each_refusal_has_its_reason_code(self):
         master = self.master(self.gateway())
         self.assertEqual(master.command(9), (plc.REFUSED, plc.NO_SUCH_COMMAND))
         self.assertEqual(master.command(plc.START, recipe=77), (plc.REFUSED, plc.NO_SUCH_RECIPE))
@@ -128,7 +128,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.START, recipe=1), (plc.REFUSED, 102))  # R02: the daemon is not idle
         self.assertEqual(len(plc.started(self.softgripd)), 1)
 
-    def test_a_gateway_that_comes_back_does_not_take_an_old_command_for_a_new_one(self):
+    def test_a_restarted_gateway_does_not_execute_an_old_command(self):
         gateway = self.gateway()
         master = self.master(gateway)
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
@@ -150,7 +150,7 @@ class Gateway(bench.BenchTest):
         cyclic.counter = counter
         self.assertEqual(cyclic.command(plc.START, recipe=1)[0], plc.ACCEPTED)
 
-    def test_a_master_that_falls_silent_is_noticed_and_the_rig_stops(self):
+    def test_a_client_without_heartbeat_is_detected_and_the_rig_stops(self):
         master = self.master(self.gateway(changes=((r"silence_s: 2", "silence_s: 0.5"),)))
         self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
         time.sleep(0.8)  # the gateway does not monitor a client that sends no heartbeat
@@ -166,7 +166,7 @@ class Gateway(bench.BenchTest):
         master.beat()
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
 
-    def test_the_reaction_to_a_silence_is_kept_for_the_next_daemon(self):
+    def test_the_reaction_to_a_silent_client_is_sent_to_the_next_daemon(self):
         """Tests a client that becomes silent. The daemon is killed before the gateway detects that the client is
         silent."""
         changes = ((r"silence_s: 2", "silence_s: 0.5"), (r"when_silent: stop", "when_silent: vent"))
@@ -184,7 +184,7 @@ class Gateway(bench.BenchTest):
         master.beat_until(lambda: master.read("master") == 1)
         master.beat_until(lambda: master.read("state") == plc.IDLE)
 
-    def test_the_reaction_to_a_silence_waits_for_a_daemon_that_does_not_answer(self):
+    def test_the_reaction_to_a_silent_client_is_sent_after_a_daemon_stall(self):
         """Tests a client and a daemon that become silent within 40 ms. The control loop of the silent daemon continues
         the grip."""
         for lead_s in (-0.04, -0.02, 0, 0.02, 0.04):
@@ -204,7 +204,7 @@ class Gateway(bench.BenchTest):
                 self.assertTrue(self.softgripd.ask("vent")["ok"])
                 self.softgripd.wait_for_state("idle")
 
-    def test_without_a_daemon_everything_is_refused_and_with_the_next_one_all_is_well(self):
+    def test_commands_are_refused_without_a_daemon_and_accepted_with_a_new_one(self):
         master = self.master(self.gateway())
         self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
         self.softgripd.kill()
@@ -218,7 +218,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(plc.started(again), [])
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
 
-    def test_masters_are_few_and_known(self):
+    def test_the_gateway_limits_clients_and_closes_idle_connections(self):
         gateway = self.gateway(changes=((r"max_masters: 4", "max_masters: 2"), (r"idle_s: 60", "idle_s: 5")))
         master = self.master(gateway)
         other = socket.create_connection(("127.0.0.1", gateway.port))
@@ -241,7 +241,7 @@ class Gateway(bench.BenchTest):
         bench.wait_for("the end of one that says nothing", others_place)
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
 
-    def test_a_master_is_not_locked_out_by_its_own_dead_connections(self):
+    def test_a_client_can_replace_its_dead_connections(self):
         """Tests that a client can replace its dead connections. The gateway keeps a dead connection for up to a
         minute, but must accept a new connection of the same client much earlier."""
         gateway = self.gateway()
@@ -258,7 +258,7 @@ class Gateway(bench.BenchTest):
         self.addCleanup(master.close)
         return master
 
-    def test_a_daemon_that_accepts_nobody_keeps_no_master_waiting(self):
+    def test_a_daemon_with_a_full_queue_does_not_block_the_clients(self):
         path = self.folder / "full.sock"
         full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.addCleanup(full.close)
@@ -277,13 +277,13 @@ class Gateway(bench.BenchTest):
         bench.wait_for("its heartbeat", lambda: master.read("heartbeat") != before)
         self.assertEqual(master.command(plc.VENT), (plc.REFUSED, plc.NO_DAEMON))
 
-    def test_who_is_not_on_the_list_is_shown_out(self):
+    def test_a_client_outside_the_allow_list_is_disconnected(self):
         gateway = self.gateway(changes=((r"allow: \[127.0.0.1\]", "allow: [127.0.0.2]"),))
         with socket.create_connection(("127.0.0.1", gateway.port)) as client:
             client.settimeout(bench.PATIENCE_S)
             self.assertEqual(client.recv(1), b"")
 
-    def test_bytes_that_are_no_request_end_the_connection_and_nothing_else(self):
+    def test_malformed_bytes_close_only_their_own_connection(self):
         gateway = self.gateway()
         master = self.master(gateway)
         for data in (b"GET / HTTP/1.1\r\n\r\n", b"\xff" * 5000, bytes([0, 1, 0, 0, 0, 0, 1, 3])):

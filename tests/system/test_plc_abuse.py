@@ -38,7 +38,7 @@ class Abuse(bench.BenchTest):
         self.assertEqual((status["state"], status["fault"]), ("idle", None))
         self.assertEqual(plc.started(self.softgripd), [])
 
-    def test_a_thousand_connections(self):
+    def test_a_thousand_connections_do_not_disturb_the_plc(self):
         crowd = []
         for _ in range(1000):
             crowd.append(self.connect())
@@ -53,7 +53,7 @@ class Abuse(bench.BenchTest):
         self.assertGreaterEqual(ends, 997)
         self.assert_well()
 
-    def test_without_free_descriptors_it_does_not_spin(self):
+    def test_the_gateway_without_free_descriptors_does_not_busy_wait(self):
         pid = self.gateway.child.pid
         in_use = len(os.listdir(f"/proc/{pid}/fd"))
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (in_use, in_use))
@@ -86,7 +86,7 @@ class Abuse(bench.BenchTest):
         except TimeoutError:
             return False
 
-    def test_who_dribbles_a_request_is_shown_out(self):
+    def test_a_client_that_sends_one_byte_per_second_is_disconnected(self):
         """Tests a client that sends one byte per second and never completes its request of 260 bytes. After `idle_s`,
         the gateway must close this connection in favour of another client."""
         slow = self.connect()
@@ -105,7 +105,7 @@ class Abuse(bench.BenchTest):
         self.assertGreater(time.monotonic() - began, 4)
         self.assert_well()
 
-    def test_who_asks_and_does_not_read_costs_nobody_anything(self):
+    def test_a_client_that_reads_no_replies_does_not_disturb_the_plc(self):
         deaf = self.connect()
         deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
         deaf.setblocking(False)
@@ -122,7 +122,7 @@ class Abuse(bench.BenchTest):
         self.assertLess(self.gateway.resident_kib(), 64 * 1024)
         self.assert_well()
 
-    def test_strange_bytes(self):
+    def test_random_malformed_frames_do_not_disturb_the_plc(self):
         """Generates frames that are cut off, damaged or joined, and frames with a wrong function, address, count or
         length. No frame is a valid command, because the generator omits values that could be a command."""
         seed = 20261122

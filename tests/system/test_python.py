@@ -33,7 +33,7 @@ class Python(bench.BenchTest):
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done.stdout
 
-    def test_a_grip_from_start_to_release(self):
+    def test_a_python_client_starts_and_releases_a_grip(self):
         gripper = self.gripper()
         self.assertEqual((gripper.hello.api, gripper.hello.role), (1, "operate"))
         self.assertIn("pick_stone", [s.name for s in gripper.sequences()])
@@ -54,7 +54,7 @@ class Python(bench.BenchTest):
         self.assertTrue((left["result"] == "holding").any())
         self.assertLess(left["displacement_mm"][left["result"] == "holding"].max(), 13.5)
 
-    def test_leaving_the_block_stops_what_runs(self):
+    def test_an_exception_in_the_with_block_stops_the_sequence(self):
         with self.assertRaises(KeyboardInterrupt), self.gripper() as gripper:
             gripper.start("pick_stone")
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
@@ -62,7 +62,7 @@ class Python(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         self.assertEqual(self.softgripd.status()["sequence"]["ended"], "stopped")
 
-    def test_what_is_refused_is_an_exception(self):
+    def test_each_refusal_raises_its_exception_class(self):
         gripper, other = self.gripper(), self.gripper("other")
         with self.assertRaises(softgrip.SequenceRefused) as refused:
             gripper.start("pick_stome")
@@ -84,7 +84,7 @@ class Python(bench.BenchTest):
         with self.assertRaises(softgrip.NoDaemon):
             softgrip.Gripper(str(self.folder / "nobody"), name="robot")
 
-    def test_a_daemon_that_goes_and_comes_back(self):
+    def test_a_client_reconnects_after_a_restart_of_the_daemon(self):
         gripper = self.gripper()
         gripper.start("pick_stone")
         gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
@@ -106,7 +106,7 @@ class Python(bench.BenchTest):
         self.assertIn("off_model", codes)
         self.assertLessEqual(codes, {"off_model", "moves"})
 
-    def test_tasks_share_one_connection(self):
+    def test_asyncio_tasks_share_one_connection(self):
         async def work():
             seen = []
 
@@ -130,7 +130,7 @@ class Python(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         self.assertEqual(self.softgripd.status()["sequence"]["ended"], "stopped")
 
-    def test_the_examples(self):
+    def test_the_example_programs_run_with_the_expected_output(self):
         said = self.example("pick_part", "--sequence", "pick_stone")
         self.assertIn("left: HOLDING at", said)
         self.assertIn("let go: done", said)

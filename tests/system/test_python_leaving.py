@@ -63,7 +63,7 @@ class Leaving(quiet_rig.QuietRigTest):
         return [event["request"] for event in self.softgripd.events()
                 if event["kind"] == "sequence_started" and event.get("client") == client]
 
-    def test_the_sequence_of_another_client_goes_on(self):
+    def test_the_end_of_a_block_does_not_stop_another_client(self):
         with self.gripper() as robot:
             first = robot.start("short", text=SHORT).request
             self.wait_until_ended(first)
@@ -78,7 +78,7 @@ class Leaving(quiet_rig.QuietRigTest):
         other.stop()
         self.assertEqual(self.wait_until_ended(theirs), "stopped")
 
-    def test_the_sequence_of_another_client_goes_on_beside_asyncio(self):
+    def test_the_end_of_an_async_block_does_not_stop_another_client(self):
         async def work():
             async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
                 await robot.start("short", text=SHORT)
@@ -92,7 +92,7 @@ class Leaving(quiet_rig.QuietRigTest):
         theirs = asyncio.run(work())
         self.assertEqual(self.running(), theirs)
 
-    def test_a_daemon_that_was_silent_stops_when_it_goes_on(self):
+    def test_an_unconfirmed_stop_is_executed_when_the_daemon_resumes(self):
         """Tests a paused daemon and a stalled connection. The stop request then waits in the socket, and an exception
         must state that the stop is not confirmed."""
         proxy = self.proxy()
@@ -132,14 +132,14 @@ class Leaving(quiet_rig.QuietRigTest):
                 time.sleep(0.2)
                 self.assertIsNone(self.running(), "the sequence began later")
 
-    def test_a_connection_that_was_cut(self):
+    def test_a_sequence_is_stopped_after_a_closed_connection(self):
         proxy = self.proxy()
         with self.gripper(proxy.path) as robot:
             request = robot.start("long", text=LONG).request
             proxy.cut()
         self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_a_connection_that_was_cut_beside_asyncio(self):
+    def test_an_async_sequence_is_stopped_after_a_closed_connection(self):
         async def work():
             async with softgrip.AsyncGripper(proxy.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
                 grip = await robot.start("long", text=LONG)
@@ -149,7 +149,7 @@ class Leaving(quiet_rig.QuietRigTest):
         proxy = self.proxy()
         self.assertEqual(self.wait_until_ended(asyncio.run(work())), "stopped")
 
-    def test_a_daemon_that_cannot_be_reached_any_more_is_an_error(self):
+    def test_an_unreachable_daemon_raises_stop_not_confirmed(self):
         proxy = self.proxy()
         with self.assertRaises(softgrip.StopNotConfirmed) as raised, self.gripper(proxy.path) as robot:
             request = robot.start("long", text=LONG).request
@@ -158,7 +158,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertIn("softgrip stop", str(raised.exception))
         self.assertEqual(self.running(), request, "no stop was possible, so there is an exception")
 
-    def test_a_block_that_was_given_up_lets_its_sequence_go_on(self):
+    def test_an_explicit_close_lets_the_sequence_continue(self):
         with self.gripper() as robot:
             request = robot.start("long", text=LONG).request
             robot.close()
@@ -178,7 +178,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertEqual(robot.returncode, -signal.SIGINT, errors)
         self.assertIn("KeyboardInterrupt", errors)
 
-    def test_ctrl_c_at_any_moment_of_a_start(self):
+    def test_ctrl_c_during_a_start_leaves_no_sequence_running(self):
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -190,7 +190,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertIsNone(self.running(), "a sequence started after its stop")
         self.assertEqual({self.ended(request) for request in self.starts()} - {"stopped"}, set())
 
-    def test_tasks_that_are_cancelled_in_a_start(self):
+    def test_a_cancelled_start_leaves_no_sequence_running(self):
         async def work(chance):
             async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
                 starting = asyncio.create_task(robot.start("long", text=LONG))
@@ -208,7 +208,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertIsNone(self.running())
         self.assertEqual({self.ended(request) for request in self.starts()} - {"stopped"}, set())
 
-    def test_a_crowd_does_not_displace_an_owner_or_a_subscriber(self):
+    def test_other_clients_do_not_displace_an_owner_or_a_subscriber(self):
         with self.gripper() as robot:
             request = robot.start("long", text=LONG).request
             subscriber = self.gripper(name="subscriber")
@@ -234,7 +234,7 @@ class Leaving(quiet_rig.QuietRigTest):
             self.assertEqual(robot.status().sequence.request, request)
         self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_a_newcomer_without_a_place_is_refused_with_a_sentence(self):
+    def test_a_17th_client_is_refused_and_an_owner_can_still_stop(self):
         proxy = self.proxy()
         # The test itself uses one of the 16 connections.
         subscribers = [self.gripper(path, name="subscriber") for path in [proxy.path] + 14 * [self.path]]
@@ -255,7 +255,7 @@ class Leaving(quiet_rig.QuietRigTest):
         for subscriber in subscribers[1:]:
             self.assertEqual(subscriber.status().state, softgrip.State.IDLE)
 
-    def test_malformed_lines(self):
+    def test_a_sequence_is_stopped_after_a_malformed_line(self):
         """Tests a server that sends arbitrary lines. The client must raise an exception of the package, and the
         sequence must be stopped."""
         proxy = self.proxy()
@@ -283,7 +283,7 @@ class Leaving(quiet_rig.QuietRigTest):
                     self.assertEqual(self.wait_until_ended(request), "stopped")
                 self.assertIsNone(self.running())
 
-    def test_an_endless_line_is_a_protocol_error(self):
+    def test_an_endless_line_raises_a_protocol_error(self):
         proxy = self.proxy()
         for use in (self.read_sync, self.read_async):
             with self.subTest(use.__name__), self.assertRaisesRegex(softgrip.ProtocolError, "longer than"):
@@ -303,7 +303,7 @@ class Leaving(quiet_rig.QuietRigTest):
 
         asyncio.run(work())
 
-    def test_two_clients_and_two_faults_at_once(self):
+    def test_two_random_faults_leave_no_unreported_sequence_running(self):
         """Runs random stalls, closed connections, damaged lines and exceptions. Two clients use the rig in turn. The
         seed determines the series of events."""
         proxy = self.proxy()

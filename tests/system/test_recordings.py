@@ -47,7 +47,7 @@ class Recordings(bench.BenchTest):
         path.write_text(before)
         return "\n".join(said)
 
-    def test_promises_are_kept_and_a_tampered_recording_is_found_out(self):
+    def test_the_check_accepts_a_valid_recording_and_rejects_changed_rows(self):
         recording = self.record()[0]
         self.assertEqual(recording_check.check(recording), [])
 

@@ -9,7 +9,7 @@ import bench
 class RigSession(unittest.TestCase):
     """Tests that scripts/demo.sh can use scripts/rig_session.sh."""
 
-    def test_a_rig_and_a_daemon_come_up_and_end(self):
+    def test_the_script_starts_and_ends_a_rig_and_a_daemon(self):
         done = subprocess.run(["bash", "-euc", """
             build=$1 work=$(mktemp -d)
             runs=$work/runs

@@ -39,7 +39,7 @@ class Line(bench.BenchTest):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
         self.assertEqual(daemon.end(), 0)
 
-    def test_a_rate_that_cannot_fit_is_refused_with_the_sum(self):
+    def test_a_rate_above_the_line_capacity_is_rejected_with_the_calculation(self):
         done = self.report(self.line_rig((r"rate_hz: \d+", "rate_hz: 100")))
         self.assertEqual(done.returncode, 3)
         for part in ("not fast enough for 100 exchanges a second", "115200 8N1", "63 bytes (5.47 ms)",
@@ -53,7 +53,7 @@ class Line(bench.BenchTest):
         self.assertIn(f"configured {RATE_HZ} Hz: fits", done.stdout)
         self.assertIn("watchdog: NONE on the board", done.stdout)
 
-    def test_an_adapter_that_is_pulled_out_comes_back(self):
+    def test_a_reconnected_serial_adapter_is_used_again(self):
         faults = self.write("faults.yaml", "faults:\n  - {name: unplugged, kind: disconnect}\n")
         rig = self.line_rig()
         emulator = self.line_emulator(rig, "--faults", faults)
@@ -91,7 +91,7 @@ class MbpollOnTheLine(bench.BenchTest):
                                *map(str, arguments)], capture_output=True, text=True, timeout=bench.PATIENCE_S)
         return done
 
-    def test_reads_and_writes(self):
+    def test_mbpoll_reads_and_writes_registers_on_a_serial_line(self):
         device = self.folder / "line"
         process = bench.Process("softgrip-rig", [
             bench.SOFTGRIP_RIG, "--model", self.folder / "config/models/bench_twin.yaml", "--rtu", device, "--baud", 19200,

@@ -27,7 +27,7 @@ class SafeOutputs(bench.BenchTest):
         return subprocess.run([bench.SOFTGRIPD, "--config", self.rig_, "--safe-outputs"], capture_output=True, text=True,
                               timeout=bench.PATIENCE_S, env={**os.environ, **environment}, check=False)
 
-    def test_after_a_kill_the_board_is_vented(self):
+    def test_safe_outputs_vent_the_board_after_a_kill(self):
         self.hold().kill()
         time.sleep(0.5)
         # Without --safe-outputs, the board would keep its outputs, because it has no watchdog.
@@ -37,21 +37,21 @@ class SafeOutputs(bench.BenchTest):
         self.assertIn("vented and confirmed", ended.stdout)
         self.assertEqual(max(self.emulator_.commands_kpa()), 0)
 
-    def test_after_an_orderly_end_nothing_is_written(self):
+    def test_safe_outputs_write_nothing_after_a_normal_end(self):
         self.hold().kill()
         held = self.emulator_.commands_kpa()
         ended = self.safe_outputs(SERVICE_RESULT="success")
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         self.assertEqual(self.emulator_.commands_kpa(), held)
 
-    def test_beside_a_running_daemon_it_is_refused(self):
+    def test_safe_outputs_are_refused_while_a_daemon_runs(self):
         daemon = self.hold()
         ended = self.safe_outputs()
         self.assertEqual(ended.returncode, 5, ended.stdout + ended.stderr)
         self.assertGreater(min(self.emulator_.commands_kpa()), 10)
         self.assertEqual(daemon.status()["state"], "running")
 
-    def test_a_board_that_is_gone_is_said(self):
+    def test_safe_outputs_report_an_unreachable_board(self):
         self.emulator_.kill()
         ended = self.safe_outputs()
         self.assertEqual(ended.returncode, 4, ended.stdout + ended.stderr)
@@ -91,7 +91,7 @@ class EditedRig(bench.BenchTest):
         yield "an empty rig file", self.rig_path, b""
         yield "another kind of file", self.rig_path, b"steps: []\n"
 
-    def test_the_rig_that_ran_is_vented(self):
+    def test_safe_outputs_vent_with_the_last_valid_rig_file(self):
         for what, path, contents in self.edits():
             with self.subTest(edit=what):
                 whole = path.read_bytes()
@@ -105,28 +105,28 @@ class EditedRig(bench.BenchTest):
                 self.assertEqual(max(self.board.commands_kpa()), 0)
                 path.write_bytes(whole)
 
-    def test_a_rig_file_that_is_gone(self):
+    def test_safe_outputs_vent_although_the_rig_file_was_deleted(self):
         daemon = self.under_pressure()
         self.rig_path.unlink()
         daemon.kill()
         self.safe_outputs(0)
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
-    def test_a_file_that_names_another_board_by_now(self):
+    def test_safe_outputs_vent_the_board_in_use_although_the_file_changed(self):
         daemon = self.under_pressure()
         self.rig_path.write_text(self.rig_path.read_text().replace(f"port: {self.board.port}", "port: 1"))
         daemon.kill()
         self.safe_outputs(0)
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
-    def test_once_the_board_is_safe_the_file_counts_again(self):
+    def test_the_rig_file_is_read_again_after_the_board_is_safe(self):
         self.under_pressure().kill()
         self.assertIn("as the last softgripd had read it", self.safe_outputs(0).stdout)
         self.assertNotIn("as the last softgripd had read it", self.safe_outputs(0).stdout)
         self.rig_path.write_text("name: half")
         self.safe_outputs(3)
 
-    def test_as_long_as_the_board_is_silent_it_is_kept(self):
+    def test_the_stored_rig_file_is_kept_until_the_board_responds(self):
         daemon = self.under_pressure()
         port = self.board.port
         daemon.kill()
@@ -137,7 +137,7 @@ class EditedRig(bench.BenchTest):
         self.safe_outputs(0)
         self.assertEqual(max(again.commands_kpa()), 0)
 
-    def test_after_an_orderly_end_the_file_counts(self):
+    def test_the_rig_file_is_read_after_a_normal_end(self):
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
         self.assertEqual(daemon.end(signal.SIGTERM), 0)
@@ -165,7 +165,7 @@ class Hold(bench.BenchTest):
         time.sleep(1)
         return check.stdout, start, daemon.errors(), emulator.commands_kpa()
 
-    def test_the_boards_watchdog_ends_it_and_that_is_said(self):
+    def test_the_messages_state_that_the_watchdog_ends_the_hold(self):
         emulator = self.emulator("--object", "stone")
         check, start, end, outputs_kpa = self.ends_holding(emulator, self.rig(emulator.port))
         sentence = "hold: a part is held only while softgripd runs; the watchdog vents the fingers 0.5 s after the program ends"
@@ -174,7 +174,7 @@ class Hold(bench.BenchTest):
         self.assertIn("the board's watchdog will vent the outputs in 0.5 s; until then, the outputs keep their values", end)
         self.assertEqual(max(outputs_kpa), 0)
 
-    def test_a_board_without_a_watchdog_holds_by_itself(self):
+    def test_a_board_without_a_watchdog_holds_after_the_daemon_ends(self):
         rig = serial_rig.rig_file(self.folder, serial_rig.RATE_HZ)
         emulator = serial_rig.Emulator(self.folder, rig, "--object", "stone")
         self.processes.append(emulator)

@@ -19,7 +19,7 @@ class Screen(bench.BenchTest):
         self.softgripd.start("hand_over")
         bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
 
-    def test_pressure_that_stays_on_after_a_stop_is_said_everywhere_until_it_is_let_down(self):
+    def test_remaining_pressure_after_a_stop_is_shown_until_the_release(self):
         self.assertIsNone(self.softgripd.status()["under_pressure"])
         self.hold()
         self.assertIsNone(self.softgripd.status()["under_pressure"], "the hold was requested, so it is not a problem")
@@ -35,7 +35,7 @@ class Screen(bench.BenchTest):
         bench.wait_for("the end of it", lambda: self.softgripd.status()["under_pressure"] is None)
         self.assertNotIn("UNDER PRESSURE", self.softgrip("status").stdout)
 
-    def test_a_fault_names_its_finger_and_what_clears_it(self):
+    def test_a_fault_is_shown_with_finger_cause_and_remedy(self):
         self.emulated.ask("fault blind")
         self.softgripd.wait_for_state("faulted")
         fault = self.softgripd.status()["fault"]
@@ -57,7 +57,7 @@ class Screen(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         self.assertIn("left: Fault F202 reading_out_of_range was acknowledged.", self.softgrip("events").stdout)
 
-    def test_a_board_that_was_never_there_says_what_is_tried(self):
+    def test_the_status_of_an_unreachable_board_states_the_attempts(self):
         self.softgripd.end()
         self.emulated.kill()
         away = self.daemon(self.rig(self.emulated.port))
@@ -71,12 +71,12 @@ class Screen(bench.BenchTest):
         self.assertIn("- mm, reference -", shown)
         self.assertIn("board NOT CONNECTED", self.softgrip("watch", "--count", "1").stdout)
 
-    def test_a_refusal_is_a_sentence_with_the_next_command(self):
+    def test_a_refusal_states_its_reason_and_the_next_command(self):
         refused = self.softgrip("stop", expect=5).stderr
         self.assertIn("refused (R07): No sequence runs.", refused)
         self.assertIn("`softgrip release`", refused)
 
-    def test_events_are_a_journal(self):
+    def test_events_are_listed_in_order_and_filtered_by_options(self):
         self.hold()
         self.softgrip("vent")
         self.softgripd.wait_for_state("idle")

@@ -50,7 +50,7 @@ class SecondClient(bench.BenchTest):
         report = json.loads(self.softgrip("doctor", "--rig", rig, "--json", expect=None).stdout)
         return {finding["name"]: finding for finding in report["findings"]}
 
-    def test_a_reader_keeps_the_pressure_of_a_killed_daemon_and_was_told_before(self):
+    def test_a_reading_client_prevents_the_watchdog_trip_and_is_reported(self):
         """Kills the daemon. The requests of the second client then prevent a watchdog trip, so the pressure remains. A
         dead daemon cannot vent, so the daemon must warn of the second client while it runs."""
         emulator = self.emulator("--object", "stone")
@@ -69,7 +69,7 @@ class SecondClient(bench.BenchTest):
         reader.close()
         bench.wait_for("vented valves", lambda: max(emulator.commands_kpa()) == 0)
 
-    def test_the_doctor_warns_of_it_and_counts(self):
+    def test_doctor_warns_of_a_second_client_and_states_the_count(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         alone = self.doctor(rig)
@@ -81,7 +81,7 @@ class SecondClient(bench.BenchTest):
         self.assertEqual(both["clients"]["verdict"], "warn")
         self.assertIn("has 2 clients", both["clients"]["text"])
 
-    def test_a_watchdog_that_only_writes_feed_is_not_fed_by_a_reader(self):
+    def test_a_reading_client_does_not_reset_a_watchdog_that_needs_writes(self):
         board = self.folder / "config/boards/adam-6024.yaml"
         board.write_text(board.read_text().replace("fed_by: any_request", "fed_by: functions\n  functions: [16]"))
         emulator = self.emulator()

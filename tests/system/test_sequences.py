@@ -26,7 +26,7 @@ def simulated_rig(folder):
 
 
 class WithoutADaemon(bench.BenchTest):
-    def test_run_takes_parameters_and_the_recording_says_so(self):
+    def test_run_applies_parameters_and_the_recording_states_them(self):
         self.softgrip("run", PICK, "--set", "squeeze_kpa=4", "--set", "hold_s=0.5", "--virtual-time", "--quiet",
                       "--record", "asked")
         self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "plain")
@@ -38,7 +38,7 @@ class WithoutADaemon(bench.BenchTest):
         self.assertIn("begins with squeeze_kpa 4, hold_s 0.5.", started["text"])
         self.assertLess(asked["duration_s"], plain["duration_s"] - 4, "with the shorter time the sequence ends earlier")
 
-    def test_what_cannot_be_asked_for_is_refused_with_its_place(self):
+    def test_invalid_parameters_are_rejected_before_the_run(self):
         def refused(*settings, expect=3):
             options = [word for setting in settings for word in ("--set", setting)]
             return self.softgrip("run", PICK, *options, "--virtual-time", "--record", "r", expect=expect).stderr
@@ -49,7 +49,7 @@ class WithoutADaemon(bench.BenchTest):
         self.assertIn("NAME=VALUE", refused("squeeze_kpa", expect=2))
         self.assertFalse((self.folder / "r").exists())
 
-    def test_check_tries_both_ends_of_a_range_on_the_rig(self):
+    def test_check_tests_both_ends_of_a_parameter_range(self):
         self.softgrip("check", "config/rig.yaml", PICK)
         self.softgrip("check", "config/rig.yaml", PICK, "--set", "squeeze_kpa=10")
         recipe = (self.folder / PICK).read_text()
@@ -63,7 +63,7 @@ class WithoutADaemon(bench.BenchTest):
         self.assertIn("squeeze_max_kpa is below squeeze_kpa", self.softgrip("check", "strong.yaml", expect=3).stderr)
         self.assertIn("has no parameter", self.softgrip("check", PICK, "--set", "a=1", expect=3).stderr)
 
-    def test_a_mistyped_word_leads_to_the_right_one(self):
+    def test_a_misspelled_word_gives_a_suggestion(self):
         self.assertIn("did you mean `status`?", self.softgrip("statsu", expect=2).stderr)
         self.assertIn("did you mean `--json`?", self.softgrip("status", "--jsno", expect=2).stderr)
         process = bench.Process("rig", [bench.SOFTGRIP_RIG, "--model", "config/models/bench_twin.yaml", "--board",
@@ -72,7 +72,7 @@ class WithoutADaemon(bench.BenchTest):
         self.assertEqual(process.wait(), 4)
         self.assertIn("did you mean adam-6024?", process.errors())
 
-    def test_a_recording_that_is_there_stops_run_before_anything_moves(self):
+    def test_an_existing_recording_ends_run_before_any_motion(self):
         self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r")
         before = (self.folder / "r/run.json").read_text()
         again = self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r", expect=2)
@@ -80,13 +80,13 @@ class WithoutADaemon(bench.BenchTest):
         self.assertEqual(again.stdout, "")
         self.assertEqual((self.folder / "r/run.json").read_text(), before)
 
-    def test_run_speaks_for_itself(self):
+    def test_run_messages_name_softgrip_run_and_not_softgripd(self):
         done = self.softgrip("run", PICK, "--virtual-time", "--record", "r")
         self.assertNotIn("softgripd", done.stderr)
         self.assertIn("softgrip run 0.", done.stderr)
         self.assertNotIn("none_yet", done.stdout, "the first reading is no warning")
 
-    def test_bash_completes_what_softgrip_has(self):
+    def test_the_completion_scripts_offer_all_commands(self):
         script = self.write("completion.bash", self.softgrip("completion", "bash").stdout)
         (self.folder / "bin").mkdir()
         (self.folder / "bin/softgrip").symlink_to(bench.SOFTGRIP)
@@ -113,7 +113,7 @@ class WithoutADaemon(bench.BenchTest):
             if shutil.which(parse[0]):
                 subprocess.run([*parse, self.write(f"completion.{shell}", text)], check=True)
 
-    def test_a_debian_package_would_have_the_scripts(self):
+    def test_the_completion_scripts_are_installed_for_three_shells(self):
         install = (bench.BUILD / "cmake_install.cmake").read_text()
         for place in ("bash-completion/completions", "zsh/vendor-completions", "fish/vendor_completions.d"):
             self.assertIn(place, install)
@@ -126,7 +126,7 @@ class WithADaemon(bench.BenchTest):
         self.softgripd = self.daemon(self.rig_path)
         self.softgripd.wait_for_state("idle")
 
-    def test_the_list_says_what_a_start_may_choose(self):
+    def test_the_sequence_list_states_parameters_and_problems(self):
         self.write("config/sequences/broken.yaml", "name: broken\nstep: []\n")
         text = self.softgrip("sequences").stdout
         self.assertRegex(text, r"squeeze_kpa +3 to 10 kPa, default 5: gripping pressure")
@@ -149,7 +149,7 @@ class WithADaemon(bench.BenchTest):
         self.assertIn("with squeeze_kpa 4, hold_s 600", self.softgrip("events").stdout)
         self.softgrip("vent")
 
-    def test_a_refused_start_says_what_there_is(self):
+    def test_a_refused_start_states_valid_sequences_and_parameters(self):
         unknown = self.softgrip("start", "nope", expect=3).stderr
         self.assertIn("there is no sequence 'nope'", unknown)
         self.assertIn("hand_over, pick_screw, pick_stone", unknown)
@@ -160,7 +160,7 @@ class WithADaemon(bench.BenchTest):
                                                             expect=3).stderr)
         self.assertEqual(self.softgripd.status()["state"], "idle")
 
-    def test_a_rig_file_names_its_daemon(self):
+    def test_the_option_rig_selects_the_daemon(self):
         other = {"SOFTGRIP_SOCKET": "/nowhere"}
         for command in ("status", "sequences", "events"):
             done = subprocess.run([bench.SOFTGRIP, command, "--rig", self.rig_path], capture_output=True, text=True,
@@ -170,10 +170,10 @@ class WithADaemon(bench.BenchTest):
         self.assertIn("does not name a socket", self.softgrip("status", "--rig", PICK, expect=3).stderr)
         self.softgrip("status", "--rig", self.rig_path, "--socket", "x", expect=2)
 
-    def test_the_first_reading_is_no_warning(self):
+    def test_the_first_reading_causes_no_warning(self):
         self.assertEqual([event["text"] for event in self.softgripd.events() if event["severity"] != "information"], [])
 
-    def test_run_beside_it_touches_nothing_and_says_so(self):
+    def test_run_while_a_daemon_runs_writes_nothing_to_the_board(self):
         done = self.softgrip("run", PICK, "--rig", self.rig_path, expect=4)
         self.assertIn("nothing was written to the board", done.stdout)
         self.assertNotIn("NOT confirm", done.stdout)

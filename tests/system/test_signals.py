@@ -37,12 +37,12 @@ class Interrupted(bench.BenchTest):
                 self.assertIn(f"sequence stopped by {number.name}", run.output())
                 self.assertIn("the board confirmed the safe outputs", run.output())
 
-    def test_a_run_that_reports_as_json_says_stopped(self):
+    def test_an_interrupted_run_reports_stopped_in_its_json(self):
         run = self.running("--json", "--quiet")
         self.assertEqual(run.end(signal.SIGTERM), -signal.SIGTERM)
         self.assertIn('"sequence_end":"stopped"', run.output().replace(" ", ""))
 
-    def test_a_signal_after_the_last_step_ends_the_run_too(self):
+    def test_a_signal_after_the_last_step_ends_the_run(self):
         run = self.running()
         bench.wait_for("the end of the sequence", lambda: "RELEASED" in run.output(), pause_s=0.005)
         self.assertEqual(run.end(signal.SIGINT), -signal.SIGINT, run.output())
@@ -60,7 +60,7 @@ class Interrupted(bench.BenchTest):
         self.assertEqual((self.folder / "turns").read_text(), "turn 1\n")
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
-    def test_a_daemon_with_a_sequence_is_interrupted(self):
+    def test_a_signal_ends_a_daemon_with_a_sequence_with_safe_outputs(self):
         daemon = self.process(bench.SOFTGRIPD, "--config", self.rig_path, "--sequence",
                               "config/sequences/pick_stone.yaml")
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
@@ -68,21 +68,21 @@ class Interrupted(bench.BenchTest):
         self.assertIn("the sequence ended: stopped", daemon.errors())
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
-    def test_a_sequence_that_outlasts_the_duration_is_not_done(self):
+    def test_a_sequence_longer_than_duration_s_exits_with_code_6(self):
         daemon = self.process(bench.SOFTGRIPD, "--config", self.rig_path, "--sequence",
                               "config/sequences/pick_stone.yaml", "--duration-s", "3")
         self.assertEqual(daemon.wait(), 6, daemon.errors())
         self.assertIn("the sequence ended: stopped", daemon.errors())
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
-    def test_a_number_of_updates_that_is_not_reached(self):
+    def test_an_interrupted_watch_with_a_count_ends_by_the_signal(self):
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
         watch = self.process(bench.SOFTGRIP, "watch", "--count", "100000", "--socket", daemon.socket_path)
         bench.wait_for("updates", lambda: watch.output().count("\n") > 2)
         self.assertEqual(watch.end(signal.SIGINT), -signal.SIGINT)
 
-    def test_a_daemon_and_a_watch_without_an_end_are_done(self):
+    def test_an_interrupted_daemon_or_watch_without_limit_exits_with_code_0(self):
         daemon = self.daemon(self.rig_path)
         daemon.wait_for_state("idle")
         watch = self.process(bench.SOFTGRIP, "watch", "--socket", daemon.socket_path)
@@ -95,7 +95,7 @@ class WithoutABoard(bench.BenchTest):
     """Tests a run in virtual time. A signal interrupts an endless sequence, and the recording must be closed
     properly."""
 
-    def test_a_run_in_virtual_time(self):
+    def test_an_interrupted_virtual_run_completes_its_recording(self):
         for number in INTERRUPTING:
             with self.subTest(signal=number.name):
                 folder = self.folder / f"record_{number.name}"

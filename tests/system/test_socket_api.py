@@ -72,7 +72,7 @@ class SocketApi(bench.BenchTest):
         self.assertFalse(reply["ok"], reply)
         return reply["error"]["code"]
 
-    def test_hello_says_what_one_may(self):
+    def test_hello_states_the_role_and_the_permitted_commands(self):
         operator = self.client().ask("hello", client="cell 4", api=1)["result"]
         self.assertEqual((operator["role"], operator["client"]), ("operate", "cell 4"))
         self.assertIn("start", operator["commands"])
@@ -83,7 +83,7 @@ class SocketApi(bench.BenchTest):
         self.assertEqual(self.code(self.client().ask("hello", api=2)), "wrong_api")
         self.assertEqual(self.code(self.client().ask("hello", client="a\nb")), "bad_request")
 
-    def test_who_looks_moves_nothing(self):
+    def test_a_read_only_client_cannot_move_the_rig(self):
         viewer = self.client("display", self.look)
         for command, keys in (("start", {"sequence": "pick_stone"}), ("stop", {}), ("vent", {}), ("release", {}),
                               ("acknowledge", {}), ("start", {"sequence": "pick_stone", "dry_run": True})):
@@ -94,12 +94,12 @@ class SocketApi(bench.BenchTest):
         self.assertEqual(viewer.ask("status")["result"]["state"], "running")
         self.assertTrue(viewer.ask("statistics", histograms=True)["ok"])
 
-    def test_viewers_take_no_places_of_operators(self):
+    def test_read_only_clients_use_no_connections_of_operators(self):
         crowd = [self.client("viewer", self.look) for _ in range(16)]
         self.assertTrue(self.client("robot").ask("vent")["ok"])
         self.assertTrue(crowd[0].ask("status")["ok"])
 
-    def test_others_may_stop_and_vent_but_not_start(self):
+    def test_other_clients_can_stop_but_not_start_or_release(self):
         robot, other = self.client("robot"), self.client("other")
         request = robot.ask("start", sequence="pick_stone")["result"]["request"]
         self.softgripd.wait_for_state("running")
@@ -118,7 +118,7 @@ class SocketApi(bench.BenchTest):
         self.assertEqual(by["sequence_started"], "robot")
         self.assertIn("other", [e.get("client") for e in self.softgripd.events() if e["kind"] == "state_changed"])
 
-    def test_an_owner_that_has_gone_owns_nothing(self):
+    def test_the_ownership_ends_when_the_owner_disconnects(self):
         robot, other = self.client("robot"), self.client("other")
         robot.ask("start", sequence="pick_stone")
         self.softgripd.wait_for_event("grip_result", code="HOLDING", channel="left")
@@ -145,7 +145,7 @@ class SocketApi(bench.BenchTest):
         self.assertEqual(refused["error"]["refusal"]["name"], "not_idle")
         self.assertEqual(self.softgripd.status()["state"], "running")
 
-    def test_the_overall_result(self):
+    def test_the_overall_result_follows_the_results_of_the_fingers(self):
         self.assertEqual(self.softgripd.status()["result"], "-")
         self.softgripd.start("pick_stone")
         bench.wait_for("both fingers", lambda: self.softgripd.status()["result"] == "HOLDING")
@@ -153,7 +153,7 @@ class SocketApi(bench.BenchTest):
         self.board.ask("object out")
         bench.wait_for("fingers without their part", lambda: self.softgripd.status()["result"] == "PART LOST")
 
-    def test_nothing_is_missed_over_a_reconnection(self):
+    def test_a_reconnected_subscriber_receives_every_event(self):
         first = self.client("watcher")
         first.ask("subscribe", since=0)
         self.softgripd.start("pick_stone")
@@ -176,7 +176,7 @@ class SocketApi(bench.BenchTest):
         self.assertNotEqual(new["started_at"], begun["started_at"])
         self.assertEqual(third.events(lambda e: e["kind"] == "daemon_started")[0]["id"], 1)
 
-    def test_a_subscriber_that_does_not_read_holds_up_nobody_and_misses_nothing(self):
+    def test_a_slow_subscriber_blocks_no_client_and_receives_every_event(self):
         slow = self.client("slow")
         slow.ask("subscribe", since=0)
         slow.ask("watch", rate_hz=50)
@@ -210,7 +210,7 @@ class SocketApi(bench.BenchTest):
 
 
 class Thermometer(bench.BenchTest):
-    def test_what_is_measured_is_told_by_status_and_screen(self):
+    def test_the_measured_temperature_is_shown_by_status_and_screen(self):
         text = (self.folder / "config/rig.yaml").read_text()
         for old, new in (("displacement_noise_mm: 0.03", "displacement_noise_mm: 0.03\n        temperature_c: 31"),
                          ("channel_defaults:", "channel_defaults:\n  temperature_sensor: "
@@ -229,7 +229,7 @@ class Thermometer(bench.BenchTest):
 
 
 class Schema(bench.unittest.TestCase):
-    def test_what_is_not_in_it_is_refused(self):
+    def test_the_schema_rejects_wrong_unknown_and_missing_values(self):
         reply = {"id": None, "ok": True, "result": {"request": 1}}
         api_schema.check(reply, "vent")
         for wrong in ({"request": "1"}, {"request": 1, "more": 2}, {}):

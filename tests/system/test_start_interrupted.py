@@ -49,7 +49,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 self.assertEqual(self.ended_by(process), (-number, "softgrip: sequence stopped\n"))
                 self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_the_sequence_of_another_client_goes_on(self):
+    def test_a_signal_does_not_stop_the_sequence_of_another_client(self):
         process = self.start("--wait", sequence=self.short)
         request = self.wait_until_running()
         process.send_signal(signal.SIGSTOP)  # pauses the program, so that it does not detect the end of its sequence
@@ -61,7 +61,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
         self.ended_by(process)
         self.assertEqual(self.running(), theirs)
 
-    def test_ctrl_c_at_any_moment(self):
+    def test_an_interrupted_start_leaves_no_sequence_running(self):
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
                 chance = random.Random(seed)
@@ -80,7 +80,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
         time.sleep(0.2)
         self.assertIsNone(self.running())
 
-    def test_a_daemon_that_was_silent_stops_when_it_goes_on(self):
+    def test_an_unconfirmed_stop_is_executed_when_the_daemon_resumes(self):
         proxy = SocketProxy(self.folder / "proxy.sock", self.path)
         self.addCleanup(proxy.close)
         for held in ((TO_CLIENT,), (TO_DAEMON, TO_CLIENT)):
@@ -110,7 +110,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
         proxy.let_go()
         self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_output_that_cannot_be_written(self):
+    def test_an_output_error_stops_the_sequence(self):
         for name in ("a closed pipe", "a closed pipe, SIGPIPE ignored", "a full disk"):
             with self.subTest(name):
                 self.softgripd.wait_for_state("idle")
@@ -129,7 +129,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 self.assertIn("sequence stopped", errors)
                 self.assertIsNone(self.running())
 
-    def test_an_older_daemon_is_refused(self):
+    def test_start_refuses_a_daemon_without_start_ids(self):
         """Tests a simulated daemon that answers hello like an early daemon of version 1. Such a daemon does not know
         ids of starts, so the program must not send it a start."""
         heard = []

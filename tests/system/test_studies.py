@@ -14,7 +14,7 @@ class Tune(bench.BenchTest):
     def tune(self, *arguments, expect=0):
         return self.softgrip("tune", "--model", MODEL, *SHORT, *arguments, expect=expect, timeout_s=120)
 
-    def test_the_snippet_fits_into_a_rig_file(self):
+    def test_the_written_gains_are_valid_in_a_rig_file(self):
         self.tune("--feedforward", "full_model", "--out", "pid.yaml")
         snippet = (self.folder / "pid.yaml").read_text()
         self.assertIn("# Limited by ", snippet)
@@ -25,7 +25,7 @@ class Tune(bench.BenchTest):
         self.assertEqual(count, 1)
         self.softgrip("check", self.write("config/tuned.yaml", rig))
 
-    def test_json_has_the_numbers_and_repeats_itself(self):
+    def test_json_contains_all_values_and_is_reproducible(self):
         first, second = (json.loads(self.tune("--out", name, "--json").stdout) for name in ("a.yaml", "b.yaml"))
         for key in ("schema", "kp_kpa_per_mm", "ki_kpa_per_mm_s", "kd_kpa_s_per_mm", "derivative_filter_s",
                     "sensitivity", "most_sensitivity", "crossover_hz", "rmse_mm", "rmse_exact_mm", "rmse_noise_mm"):
@@ -34,12 +34,12 @@ class Tune(bench.BenchTest):
         self.assertEqual(first | {"out": ""}, second | {"out": ""})
         self.assertEqual((self.folder / "a.yaml").read_text(), (self.folder / "b.yaml").read_text())
 
-    def test_a_rig_gives_rate_limits_and_feedforward(self):
+    def test_the_option_rig_sets_the_control_rate(self):
         done = self.tune("--rig", "config/rig.yaml", "--channel", "right", "--out", "-")
         self.assertIn("200 Hz", done.stdout)
         self.assertIn("pid:\n", done.stdout)
 
-    def test_what_is_refused(self):
+    def test_tune_rejects_invalid_options_and_files(self):
         for number in ("0", "-200", "nan", "inf", "fast", "1e9"):
             self.tune("--rate-hz", number, "--out", "pid.yaml", expect=2)
         self.tune("--feedforward", "magic", "--out", "pid.yaml", expect=2)
@@ -72,7 +72,7 @@ class Study(bench.BenchTest):
     def study(self, *arguments, expect=0):
         return self.softgrip("study", *arguments, expect=expect, timeout_s=170)
 
-    def test_published(self):
+    def test_study_published_writes_numbers_and_a_report(self):
         done = self.study("published", "--starts", "2", "--out", "out")
         self.assertIn("report: out/report.html", done.stdout)
         numbers = json.loads((self.folder / "out/published.json").read_text())
@@ -83,7 +83,7 @@ class Study(bench.BenchTest):
         self.assertGreater(numbers["published"]["ratio"], 2)
         self.assert_is_report("out/report.html")
 
-    def test_control(self):
+    def test_study_control_writes_numbers_and_a_report(self):
         done = self.study("control", "--draws", "2", "--frequencies-hz", "0.2", "--out", "out", "--json")
         numbers = json.loads(done.stdout)
         self.assertEqual(numbers, json.loads((self.folder / "out/control.json").read_text()))
@@ -98,7 +98,7 @@ class Study(bench.BenchTest):
         self.assertNotRegex(page, r"<script|https?://(?!www\.w3\.org)")
         self.assertLess(len(page), 1.5e6)
 
-    def test_what_is_refused(self):
+    def test_study_rejects_invalid_options(self):
         for arguments in (("published",), ("control",), ("nothing", "--out", "o"), ()):
             self.study(*arguments, expect=2)
         for number in ("0", "-1", "nan", "many"):

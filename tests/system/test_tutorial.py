@@ -68,7 +68,7 @@ class FirstRun(bench.BenchTest):
     def wait_for_state(self, state):
         bench.wait_for(f"state {state}", lambda: self.state() == state)
 
-    def test_a_grip(self):
+    def test_the_grip_commands_of_the_tutorial_work(self):
         self.assertIn("export PATH=$PWD/build/release/tools", self.build)
         rig = self.beside("softgrip-rig", self.rig_words)
         bench.wait_for("the rig", lambda: "listening" in rig.output())
@@ -88,7 +88,7 @@ class FirstRun(bench.BenchTest):
         self.shell("softgrip acknowledge")
         self.wait_for_state("idle")
 
-    def test_a_diagnosis(self):
+    def test_the_diagnosis_commands_of_the_tutorial_work(self):
         began = time.monotonic()
         self.shell(self.desk, timeout_s=170)
         print(f"identified and diagnosed in {time.monotonic() - began:.0f} s")
@@ -151,7 +151,7 @@ class Notebooks(bench.BenchTest):
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         return used.ru_utime + used.ru_stime
 
-    def test_a_foreign_file_becomes_a_figure(self):
+    def test_the_notebook_for_a_foreign_log_writes_a_figure(self):
         printed = self.printed("foreign-log.ipynb")
         difference_mm = float(re.search(r"(\S+) mm is the largest difference", printed).group(1))
         self.assertLess(difference_mm, 1e-9)
@@ -161,7 +161,7 @@ class Notebooks(bench.BenchTest):
         self.assertIn("error [mm]", (self.folder / "figure.svg").read_text())
         self.assertIn("<html", (self.folder / "report.html").read_text())
 
-    def test_a_measured_log_becomes_a_figure(self):
+    def test_the_notebook_for_a_measured_log_writes_a_figure(self):
         shutil.copytree(bench.SOURCE / "bench/foreign/data/piezo", self.folder / "bench/foreign/data/piezo")
         printed = self.printed("measured-log.ipynb")
         percent = {name: float(value) for name, value in re.findall(r"(\w+) structure: RMSE .* \((\S+) % of the span", printed)}

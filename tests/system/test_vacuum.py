@@ -58,7 +58,7 @@ class Vacuum(bench.BenchTest):
         self.assertTrue(all(abs(kpa) <= EQUAL_KPA for kpa in self.board.commands_kpa()), self.board.commands_kpa())
         self.assertLessEqual(highest_kpa, EQUAL_KPA)
 
-    def test_it_idles_at_rest_and_a_grip_ends_there(self):
+    def test_an_idle_rig_and_a_completed_grip_are_at_rest_pressure(self):
         self.start_vacuum_rig()
         for kpa in self.board.commands_kpa():
             self.assertAlmostEqual(kpa, 0, delta=EQUAL_KPA)
@@ -68,7 +68,7 @@ class Vacuum(bench.BenchTest):
         self.assertEqual(self.softgripd.results(), ["RELEASED", "RELEASED"])
         self.wait_for_rest()
 
-    def test_vent_release_and_an_orderly_end_lead_to_rest(self):
+    def test_vent_release_and_sigterm_return_to_rest_pressure(self):
         self.start_vacuum_rig()
         for command in ("vent", "release"):
             self.evacuate()
@@ -81,7 +81,7 @@ class Vacuum(bench.BenchTest):
         self.softgripd.child.send_signal(signal.SIGTERM)
         self.wait_for_rest()
 
-    def test_a_vacuum_that_a_stop_leaves_is_said(self):
+    def test_a_remaining_vacuum_after_a_stop_is_reported(self):
         self.start_vacuum_rig()
         self.evacuate()
         self.softgripd.result("stop")
@@ -91,13 +91,13 @@ class Vacuum(bench.BenchTest):
         self.wait_for_rest()
         self.assertIsNone(self.softgripd.status()["under_pressure"])
 
-    def test_without_a_daemon_the_board_goes_to_rest(self):
+    def test_the_board_returns_to_rest_pressure_after_a_kill(self):
         self.start_vacuum_rig()
         self.evacuate()
         self.softgripd.kill()
         self.wait_for_rest()
 
-    def test_a_pause_beyond_the_watchdog_leaves_rest_behind(self):
+    def test_a_pause_beyond_the_watchdog_returns_to_rest_pressure(self):
         self.start_vacuum_rig()
         self.evacuate()
         self.softgripd.child.send_signal(signal.SIGSTOP)
@@ -118,7 +118,7 @@ class Vacuum(bench.BenchTest):
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         self.wait_for_rest()
 
-    def test_a_board_that_goes_to_full_vacuum_is_refused(self):
+    def test_a_board_that_vents_to_full_vacuum_is_rejected(self):
         text = self.vacuum_rig(1502).read_text().replace("patient.yaml", "softgrip-sim.yaml")
         done = self.softgrip("check", self.write("config/full.yaml", text), expect=3)
         self.assertIn("to -100 kPa, but the rest pressure of this channel is 0 kPa", done.stdout + done.stderr)

@@ -24,7 +24,7 @@ class Watch(bench.BenchTest):
         watched.wait_for("q quit")
         return watched
 
-    def test_a_grip_from_its_start_to_its_release_by_keys(self):
+    def test_keys_start_stop_and_release_a_grip(self):
         watched = self.watch()
         watched.wait_for("idle")
         watched.type("g")
@@ -57,7 +57,7 @@ class Watch(bench.BenchTest):
         self.assertEqual(watched.wait(), 0)
         self.assertTrue(watched.restored())
 
-    def test_a_vent_is_not_asked_back(self):
+    def test_the_vent_key_needs_no_confirmation(self):
         self.softgripd.start("hand_over")
         bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
         watched = self.watch()
@@ -65,7 +65,7 @@ class Watch(bench.BenchTest):
         watched.wait_for("venting")
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
 
-    def test_a_fault_is_acknowledged_when_its_cause_is_gone(self):
+    def test_a_fault_can_be_acknowledged_only_after_its_cause_is_gone(self):
         watched = self.watch(rows=30)
         self.emulated.ask("fault blind")
         watched.wait_for("fault F202 of left")
@@ -78,7 +78,7 @@ class Watch(bench.BenchTest):
         watched.wait_for("acknowledged F202 reading_out_of_range of left")
         self.softgripd.wait_for_state("idle")
 
-    def test_nothing_is_cut_off_at_60_columns_without_a_sign(self):
+    def test_long_texts_are_wrapped_at_60_columns(self):
         watched = self.watch(columns=60)
         self.emulated.ask("fault blind")
         watched.wait_for("fault F202 of left")
@@ -89,7 +89,7 @@ class Watch(bench.BenchTest):
         self.assertIn("measure the electrical signal of the sensor.", " ".join(screen.split()))
         self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 
-    def test_it_follows_the_size_of_its_window(self):
+    def test_the_display_adapts_to_the_window_size(self):
         watched = self.watch(columns=100, rows=30)
         watched.resize(60, 20)
         watched.wait_for(lambda text: text.split("\n")[19].startswith("s stop"))
@@ -98,7 +98,7 @@ class Watch(bench.BenchTest):
         watched.resize(100, 40)
         watched.wait_for("recording")
 
-    def test_the_terminal_is_given_back_however_it_ends(self):
+    def test_the_terminal_is_restored_after_every_kind_of_end(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGSEGV,
                        signal.SIGABRT):
             with self.subTest(signal=number):
@@ -111,7 +111,7 @@ class Watch(bench.BenchTest):
         self.assertEqual(watched.wait(), 0)
         self.assertTrue(watched.restored())
 
-    def test_ctrl_z_gives_the_terminal_back_and_the_screen_returns(self):
+    def test_ctrl_z_restores_the_terminal_and_the_display_resumes(self):
         watched = self.watch()
         watched.type("\x1a")
         _, status = os.waitpid(watched.child.pid, os.WUNTRACED)
@@ -124,14 +124,14 @@ class Watch(bench.BenchTest):
         self.assertEqual(watched.wait(), 0)
         self.assertTrue(watched.restored())
 
-    def test_a_daemon_that_ends_is_said_on_the_terminal_that_was_given_back(self):
+    def test_the_end_of_the_daemon_is_reported_on_the_restored_terminal(self):
         watched = self.watch()
         self.softgripd.end()
         self.assertEqual(watched.wait(), 4)
         self.assertTrue(watched.restored())
         self.assertIn("closed the connection", watched.raw.decode(errors="replace").split("\x1b[?1049l")[-1])
 
-    def test_without_a_terminal_it_prints_lines_and_takes_no_keys(self):
+    def test_watch_without_a_terminal_prints_plain_lines(self):
         printed = self.softgrip("watch", "--count", "2").stdout
         self.assertNotIn("\x1b", printed)
         self.assertEqual(len(printed.splitlines()), 2)

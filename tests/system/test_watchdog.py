@@ -60,13 +60,13 @@ class Watchdog(bench.BenchTest):
         self.assertNotIn("WATCHDOG=1", notices)
         self.assertTrue(self.daemon_.running())  # the daemon must not end by itself; only the service manager ends it
 
-    def test_a_hung_loop_starves_it(self):
+    def test_a_stalled_loop_stops_the_watchdog_notifications(self):
         self.starves_when("softgrip-loop")
 
-    def test_a_hung_bus_thread_starves_it(self):
+    def test_a_stalled_bus_thread_stops_the_watchdog_notifications(self):
         self.starves_when("softgrip-bus")
 
-    def test_a_hung_service_thread_starves_it(self):
+    def test_a_stalled_service_thread_stops_the_watchdog_notifications(self):
         self.starves_when("softgrip-serve", patience_s=4)
 
 

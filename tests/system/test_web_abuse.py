@@ -59,7 +59,7 @@ class Abuse(web.WebTest):
         self.assertNotIn("request_refused", {e["kind"] for e in self.softgripd.events()})
         self.assertNotIn("sequence_started", {e["kind"] for e in self.softgripd.events()})
 
-    def test_no_path_leads_out(self):
+    def test_no_path_gives_access_to_files_outside_the_recordings(self):
         ups = ("..", "%2e%2e", "..%2f..", "....//", "%252e%252e", "..\\", "%c0%ae%c0%ae", "..;", ".%00.")
         paths = [f"/{a}/{b}" for up in ups for a in (up, f"recordings/{up}", f"recordings/one/{up}")
                  for b in ("secret.svg", "etc/passwd", f"{up}/secret.svg", f"{up}/{up}/etc/passwd")]
@@ -73,7 +73,7 @@ class Abuse(web.WebTest):
         self.assertEqual(self.told.ask("/recordings/one/picture.svg")[0], 200)
         self.assert_well()
 
-    def test_too_much_is_refused_before_it_is_kept(self):
+    def test_too_large_requests_are_refused(self):
         head = b"POST /api/command HTTP/1.1\r\nHost: localhost\r\n"
         self.assertEqual(self.status_of(head + b"Content-Length: 16385\r\n\r\n" + b"x" * 16385), 413)
         self.assertEqual(self.status_of(head + b"Content-Length: 99999999999\r\n\r\n"), 413)
@@ -84,7 +84,7 @@ class Abuse(web.WebTest):
         self.assertEqual(self.status_of(b"\0" * 100_000), 400)
         self.assert_well()
 
-    def test_a_thousand_connections(self):
+    def test_a_thousand_connections_do_not_disturb_the_daemon(self):
         before = self.softgripd.status()["loop"]["ticks"]
         crowd = [self.connect() for _ in range(1000)]
         self.assertEqual(len(crowd), 1000)
@@ -94,7 +94,7 @@ class Abuse(web.WebTest):
         self.assertGreater(metrics["softgrip_web_turned_away_total"], 900)
         self.assertGreater(self.softgripd.status()["loop"]["ticks"], before)
 
-    def test_who_dribbles_a_request_is_shown_out(self):
+    def test_clients_that_send_single_bytes_are_disconnected(self):
         slow = [self.connect() for _ in range(16)]
         began = time.monotonic()
         gone = set()
@@ -116,7 +116,7 @@ class Abuse(web.WebTest):
         self.assertEqual(len(gone), len(slow))
         self.assert_well()
 
-    def test_who_does_not_read_is_dropped_and_costs_nobody_anything(self):
+    def test_a_stream_client_that_does_not_read_is_disconnected(self):
         for _ in range(8):
             client = self.connect()
             client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
@@ -125,7 +125,7 @@ class Abuse(web.WebTest):
         bench.wait_for("their end", lambda: self.told.metrics()["softgrip_web_pages"] == 0, 120, 0.5)
         self.assert_well()
 
-    def test_strange_bytes(self):
+    def test_random_malformed_requests_do_not_disturb_the_daemon(self):
         seed = 20261121
         chance = random.Random(seed)
         whole = (b"POST /api/command?a=b HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n"

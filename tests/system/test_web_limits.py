@@ -69,7 +69,7 @@ class Limits(web.WebTest):
         self.assertEqual(status, 200, answer)
         self.assertEqual(told.metrics()["softgrip_up"], 1)
 
-    def test_log_ins_of_viewers_end_no_session_of_an_operator(self):
+    def test_logins_of_viewers_do_not_end_the_session_of_an_operator(self):
         told = self.start_web(access="without_token: none")
         operator = self.log_in(told, web.OPERATE)
         for _ in range(70):
@@ -78,7 +78,7 @@ class Limits(web.WebTest):
         status, text, _ = told.ask("/api/command", {"command": "vent"}, headers={"Cookie": operator})
         self.assertEqual(status, 200, text)
 
-    def test_downloads_that_nobody_reads_cost_no_memory(self):
+    def test_unread_downloads_use_less_than_16_mib_of_memory(self):
         with open(self.runs / "one" / "run.csv", "wb") as file:
             file.truncate(LARGEST_FILE)
         told = self.start_web()
@@ -91,7 +91,7 @@ class Limits(web.WebTest):
         self.assert_heard(told)
         self.assertLess(told.resident_kib(), before + 16 * MIB_IN_KIB)
 
-    def test_the_largest_crowd_of_readers_that_read_nothing_fits_into_the_unit(self):
+    def test_unread_replies_to_600_requests_use_less_than_64_mib(self):
         with open(self.runs / "one" / "run.csv", "wb") as file:
             file.truncate(LARGEST_FILE)
         names = [f"{number:03}-" + "x" * 110 + ".csv" for number in range(50)]
@@ -118,7 +118,7 @@ class Limits(web.WebTest):
         status, text, _ = told.ask("/api/command", {"command": "vent"}, token=web.OPERATE)
         self.assertEqual(status, 200, text)
 
-    def test_downloads_that_nobody_reads_take_no_place_from_a_vent(self):
+    def test_unread_downloads_do_not_prevent_a_vent(self):
         with open(self.runs / "one" / "run.csv", "wb") as file:
             file.truncate(LARGEST_FILE)
         told = self.start_web(most=8)
@@ -126,7 +126,7 @@ class Limits(web.WebTest):
             self.send(told, "/recordings/one/run.csv", receive_buffer=4096)
             self.assert_heard(told)
 
-    def test_pages_of_viewers_keep_no_operator_from_the_page(self):
+    def test_open_pages_of_viewers_do_not_block_an_operator(self):
         told = self.start_web(access="without_token: look", most=8)
         viewers = [self.send(told, "/api/stream") for _ in range(6)]
         for viewer in viewers:
@@ -139,7 +139,7 @@ class Limits(web.WebTest):
         self.assertTrue(operator.recv(100).startswith(b"HTTP/1.1 200"))
         self.assertEqual(told.metrics()["softgrip_web_pages"], 6)
 
-    def test_a_list_is_made_once_for_all_who_ask(self):
+    def test_the_list_of_recordings_is_cached_for_all_viewers(self):
         """Tests six viewers that list 20,000 folders. The test measures the processor time for the lists, because the
         lists delay all other requests by this time."""
         for number in range(20_000):
@@ -166,7 +166,7 @@ class Limits(web.WebTest):
         self.assertLess(used_s, 0.5)
 
     @unittest.skipUnless(STUCK_DISK.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
-    def test_a_disk_that_does_not_answer_delays_no_stop(self):
+    def test_a_disk_that_does_not_respond_does_not_delay_stop_and_vent(self):
         (self.runs / "one" / "run.csv").write_text("time\n")
         (self.runs / "health").mkdir()
         (self.runs / "health" / "health.json").write_text('{"made_unix_s": 7, "fingers": []}')
@@ -189,7 +189,7 @@ class Limits(web.WebTest):
                     self.assertTrue(self.all_of(client).startswith(b"HTTP/1.1 200"))
 
     @unittest.skipUnless(STUCK_DISK.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
-    def test_a_disk_that_never_answers_is_said_and_ends_with_the_process(self):
+    def test_a_disk_that_never_responds_is_reported_with_status_503(self):
         stuck = self.write("stuck", "")
         told = self.start_web(environment={"LD_PRELOAD": str(STUCK_DISK), "STUCK_WHILE": str(stuck),
                                            "STUCK_FOLDER": str(self.runs)})
@@ -199,7 +199,7 @@ class Limits(web.WebTest):
         self.assert_heard(told)
         self.assertEqual(told.end(), 0)
 
-    def test_without_free_descriptors_it_does_not_spin(self):
+    def test_softgrip_web_without_free_descriptors_does_not_busy_wait(self):
         told = self.start_web(access="without_token: operate")
         page = self.send(told, "/api/stream")
         self.assertTrue(page.recv(100).startswith(b"HTTP/1.1 200"))
@@ -217,7 +217,7 @@ class Limits(web.WebTest):
         self.assertIn(b"event: state", page.recv(1 << 20), "an open page must continue")
         self.assert_heard(told)  # the server closes connections that send no request, so it must answer this request
 
-    def test_a_limit_of_descriptors_that_is_lowered_ends_nothing_but_pages(self):
+    def test_a_lowered_descriptor_limit_closes_only_open_pages(self):
         told = self.start_web()
         pages = [self.send(told, "/api/stream") for _ in range(40)]
         for page in pages:
@@ -226,7 +226,7 @@ class Limits(web.WebTest):
         bench.wait_for("the pages to go", lambda: len(os.listdir(f"/proc/{told.child.pid}/fd")) < 30)
         self.assert_heard(told)
 
-    def test_few_descriptors_make_few_places(self):
+    def test_the_descriptor_limit_reduces_the_number_of_connections(self):
         limited = ["prlimit", "--nofile=40", str(web.SOFTGRIP_WEB)]
         self.addCleanup(setattr, web, "SOFTGRIP_WEB", web.SOFTGRIP_WEB)
         script = self.write("limited.sh", f"#!/bin/sh\nexec {' '.join(limited)} \"$@\"\n")

@@ -43,7 +43,7 @@ class WebStarts(quiet_rig.QuietRigTest):
         time.sleep(1)
         self.assertIsNone(self.running())
 
-    def test_without_an_answer_in_time(self):
+    def test_a_start_without_a_reply_in_time_is_stopped(self):
         self.proxy.hold()
         status, answer = self.web.command("start", sequence="long")
         self.assertEqual((status, answer["code"]), (503, "no_answer"))
@@ -51,7 +51,7 @@ class WebStarts(quiet_rig.QuietRigTest):
         self.proxy.let_go()
         self.check_nothing_begins()
 
-    def test_behind_a_browser_that_went_away(self):
+    def test_a_pending_start_is_cancelled_if_the_browser_disconnects(self):
         self.proxy.hold()
         browser = self.open_start()
         self.wait_until_asked("start")
@@ -60,28 +60,28 @@ class WebStarts(quiet_rig.QuietRigTest):
         self.proxy.let_go()
         self.check_nothing_begins()
 
-    def test_accepted_behind_a_browser_that_went_away(self):
+    def test_an_accepted_start_is_stopped_if_the_browser_disconnects(self):
         self.proxy.hold(TO_CLIENT)
         browser = self.open_start()
         request = self.wait_until_running()
         browser.close()
         self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_the_connection_ends_before_the_answer(self):
+    def test_a_start_is_stopped_if_the_daemon_connection_is_lost(self):
         self.proxy.hold(TO_CLIENT)
         self.open_start()
         request = self.wait_until_running()
         self.proxy.cut()
         self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_softgrip_web_ends_before_the_answer(self):
+    def test_a_start_is_stopped_if_softgrip_web_ends_before_the_reply(self):
         self.proxy.hold(TO_CLIENT)
         self.open_start()
         request = self.wait_until_running()
         self.assertEqual(self.web.end(signal.SIGTERM), 0)
         self.assertEqual(self.wait_until_ended(request), "stopped")
 
-    def test_the_sequence_of_another_client_goes_on(self):
+    def test_a_cancelled_start_does_not_stop_another_client(self):
         self.proxy.hold()
         browser = self.open_start()
         self.wait_until_asked("start")
@@ -92,7 +92,7 @@ class WebStarts(quiet_rig.QuietRigTest):
         time.sleep(1)
         self.assertEqual(self.running(), theirs)
 
-    def test_a_start_whose_outcome_is_heard_goes_on(self):
+    def test_a_start_with_a_delivered_reply_continues(self):
         status, answer = self.web.command("start", sequence="long")
         self.assertEqual(status, 200, answer)
         time.sleep(1)

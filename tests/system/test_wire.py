@@ -46,7 +46,7 @@ class Wire(bench.BenchTest):
         daemon.start(sequence)
         bench.wait_for("motion", lambda: min(rig_process.commands_kpa()) > 5)
 
-    def test_a_cable_that_is_pulled(self):
+    def test_a_disconnected_cable_latches_f101_and_the_watchdog_vents(self):
         daemon = self.holding("--faults", self.write("faults.yaml", "faults:\n  - {name: cut, kind: disconnect}\n"))
         self.rig_process.ask("fault cut")
         fault = daemon.wait_for_event("fault_latched")
@@ -59,7 +59,7 @@ class Wire(bench.BenchTest):
         self.rig_process.ask("clear cut")
         self.check_nothing_moves_until_started(daemon, self.rig_process)
 
-    def test_a_board_that_loses_power(self):
+    def test_a_board_that_loses_power_latches_f101(self):
         daemon = self.holding()
         port = self.rig_process.port
         self.rig_process.kill()
@@ -72,7 +72,7 @@ class Wire(bench.BenchTest):
         again = self.emulator("--object", "stone", port=port, name="softgrip-rig-again")
         self.check_nothing_moves_until_started(daemon, again, "pressure_staircase")
 
-    def test_requests_that_get_lost(self):
+    def test_lost_requests_latch_f101_or_f102_and_the_watchdog_vents(self):
         daemon = self.holding("--faults", self.write("faults.yaml", "faults:\n  - {name: cut, kind: lost_request}\n"))
         self.rig_process.ask("fault cut")
         fault = daemon.wait_for_event("fault_latched")
@@ -82,7 +82,7 @@ class Wire(bench.BenchTest):
         self.rig_process.ask("clear cut")
         self.check_nothing_moves_until_started(daemon, self.rig_process)
 
-    def test_a_board_without_a_watchdog_keeps_the_grip_if_the_rig_file_says_so(self):
+    def test_a_board_without_a_watchdog_keeps_the_grip_if_the_risk_is_accepted(self):
         board = self.folder / "config/boards/adam-6024.yaml"
         text = board.read_text()
         board.write_text(text[:text.index("watchdog:")] + "watchdog: {kind: none}\n")

@@ -39,7 +39,7 @@ class WireFaults(bench.BenchTest):
                 channel["validity"] == "valid" and channel["age_s"] < 0.05 for channel in status["channels"])
         bench.wait_for("fresh readings", fresh)
 
-    def test_one_bad_reply_is_survived(self):
+    def test_a_single_bad_reply_causes_no_fault(self):
         for kind in (*WIRE, "repeated_reply"):
             if kind == "disconnect":
                 continue  # a disconnect affects all replies until the test clears it
@@ -55,7 +55,7 @@ class WireFaults(bench.BenchTest):
                 for channel in self.softgripd.status()["channels"]:
                     self.assertAlmostEqual(channel["displacement_mm"], 0, delta=0.3)
 
-    def test_what_lasts_latches_and_is_acknowledged_only_when_it_is_gone(self):
+    def test_a_lasting_connection_fault_is_acknowledged_only_after_its_end(self):
         for kind, (_, codes) in WIRE.items():
             with self.subTest(kind):
                 newest = self.softgripd.events()[-1]["id"]

@@ -56,7 +56,7 @@ class Workflow(unittest.TestCase):
         return {str(path.relative_to(self.folder / "out")): path.stat().st_mtime_ns
                 for path in (self.folder / "out").glob("*/*/row.json")}
 
-    def test_a_bad_log_spoils_its_own_row_only(self):
+    def test_an_invalid_log_fails_only_its_own_row(self):
         self.small_logs("a.csv", "b.csv", "late.csv")
         (self.folder / "bad.csv").write_text("no log <b>at all</b>\n")
         table = self.table(("a", "identify", "a.csv", "", "", "--starts 3"), ("bad", "identify", "bad.csv", "", "", ""),
@@ -86,7 +86,7 @@ class Workflow(unittest.TestCase):
         again = {name for name, when in self.written().items() if when != before[name]}
         self.assertEqual(again, {f"{row}/row.json" for row in ("identify/a", "identify/bad", "identify/gone", "diagnose/twin")})
 
-    def test_a_killed_run_goes_on(self):
+    def test_the_next_run_continues_a_killed_run(self):
         names = [f"log{i}" for i in range(5)]
         self.small_logs(*(f"{name}.csv" for name in names))
         table = self.table(*((name, "identify", f"{name}.csv", "", "", SLOW) for name in names))
@@ -110,7 +110,7 @@ class Workflow(unittest.TestCase):
                              "finished steps are not run again")
         self.assertEqual(list((self.folder / "out").glob("*/*/running-*")), [])
 
-    def test_what_is_wrong_with_a_table_is_said_at_once(self):
+    def test_all_errors_of_a_table_are_reported_at_once(self):
         table = self.table(("a b", "identify", "", "", "", ""), ("x", "cook", "", "", "", ""),
                            ("y", "diagnose", "a.csv", "", "@x", ""), ("y", "identify", "'", "", "", ""))
         said = self.run_table(table, expect=3).stderr
@@ -126,7 +126,7 @@ class Workflow(unittest.TestCase):
         path.write_text(text)
         return path
 
-    def test_worlds_are_rows_too_and_none_is_begun_after_its_time(self):
+    def test_simulated_cases_are_rows_and_no_row_starts_after_its_deadline(self):
         self.small_logs("a.csv")
         table = self.table(("a", "identify", "a.csv", "", "", ""))
         said = self.run_table(table, "--until", "1", expect=1).stderr

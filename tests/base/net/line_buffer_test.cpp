@@ -51,7 +51,7 @@ TEST(LineBuffer, DividesBytesThatContainSeveralLines) {
   EXPECT_EQ(lines_of(buffer), std::vector<std::string>{"d"});
 }
 
-TEST(LineBuffer, KeepsLinesThatWereNotTakenBeforeMoreBytesArrive) {
+TEST(LineBuffer, KeepsUnreadLinesWhenMoreBytesArrive) {
   LineBuffer buffer;
   buffer.append("a\nb\n");
   EXPECT_EQ(buffer.next(), "a");
@@ -81,7 +81,7 @@ TEST(LineBuffer, EveryDivisionOfTheBytesGivesTheSameLines) {
   EXPECT_EQ(divisions, (text.size() + 1) * (text.size() + 2) / 2);
 }
 
-TEST(LineBuffer, MeasuresTheNextLine) {
+TEST(LineBuffer, ExceedsComparesTheLengthOfTheNextLine) {
   LineBuffer buffer;
   buffer.append("1234");
   EXPECT_TRUE(buffer.exceeds(3)) << "an incomplete line";
@@ -105,7 +105,7 @@ TEST(LineBuffer, ClearDiscardsAllBytes) {
   EXPECT_EQ(lines_of(buffer), std::vector<std::string>{"d"});
 }
 
-TEST(LineBuffer, RemovesOneCr) {
+TEST(LineBuffer, WithoutCrRemovesOneTrailingCarriageReturn) {
   EXPECT_EQ(without_cr("status\r"), "status");
   EXPECT_EQ(without_cr("status"), "status");
   EXPECT_EQ(without_cr("sta\rtus\r\r"), "sta\rtus\r");

@@ -60,7 +60,7 @@ class EntranceTest : public ::testing::Test {
   std::vector<Descriptor> clients_;
 };
 
-TEST_F(EntranceTest, LetsClientsInAndSaysWhenThereIsNone) {
+TEST_F(EntranceTest, AcceptsAClientOnlyIfOneIsWaiting) {
   EXPECT_FALSE(entrance_.accept(0));
   connect();
   EXPECT_TRUE(would_wake(0));
@@ -69,7 +69,7 @@ TEST_F(EntranceTest, LetsClientsInAndSaysWhenThereIsNone) {
   EXPECT_FALSE(would_wake(0));
 }
 
-TEST_F(EntranceTest, RestsWhileNoDescriptorIsFree) {
+TEST_F(EntranceTest, PausesAcceptingWhileNoDescriptorIsFree) {
   connect();
   take_all_descriptors();
   constexpr Nanoseconds now = ns_per_s;
@@ -85,7 +85,7 @@ TEST_F(EntranceTest, RestsWhileNoDescriptorIsFree) {
   EXPECT_FALSE(entrance_.short_of_descriptors());
 }
 
-TEST_F(EntranceTest, ServesOneClientWithItsSpareDescriptors) {
+TEST_F(EntranceTest, AcceptsOneClientWithTheSpareDescriptors) {
   connect();
   connect();
   leave_the_spare_descriptors();
@@ -100,7 +100,7 @@ TEST_F(EntranceTest, ServesOneClientWithItsSpareDescriptors) {
   EXPECT_TRUE(entrance_.accept(Entrance::rest)) << "the descriptor of the first client is free again";
 }
 
-TEST_F(EntranceTest, WithoutAListenerNoClientComes) {
+TEST_F(EntranceTest, AcceptsNoClientWithoutAListener) {
   Entrance none{Descriptor()};
   EXPECT_EQ(none.descriptor(0), -1);
   EXPECT_FALSE(none.accept(0));

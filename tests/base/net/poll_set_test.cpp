@@ -53,7 +53,7 @@ TEST(PollSet, ReportsTheEventsOfEachDescriptor) {
   EXPECT_TRUE(polled[invalid] && polled[invalid].invalid());
 }
 
-TEST(PollSet, TheWaitEndsAfterItsLongestTime) {
+TEST(PollSet, TheWaitEndsAtTheTimeout) {
   auto [quiet, peer] = connected();
   PollSet polled;
   const auto place = polled.add(quiet.get());
@@ -62,7 +62,7 @@ TEST(PollSet, TheWaitEndsAfterItsLongestTime) {
   EXPECT_FALSE(polled[place]);
 }
 
-TEST(PollSet, IsUsedAgainAfterClear) {
+TEST(PollSet, CanBeReusedAfterClear) {
   auto [first, first_peer] = connected();
   auto [second, second_peer] = connected();
   ASSERT_EQ(::write(first_peer.get(), "x", 1), 1);

@@ -23,7 +23,7 @@ Fields fields_of(const Grip& run) {
           {"", "state", run.healthy ? "healthy" : "later"}};
 }
 
-TEST(Result, JsonHasTheFieldsWithAKeyInTheirOrder) {
+TEST(Result, JsonContainsTheKeyedFieldsInOrder) {
   const Fields fields{
       {"z", 1}, {"", "only for readers", 2}, {"a", "titled", true}, {"list", Value::List{1, "b"}}};
   EXPECT_EQ(json_of(fields).dump(), R"({"z":1,"a":true,"list":[1,"b"]})");
@@ -32,7 +32,7 @@ TEST(Result, JsonHasTheFieldsWithAKeyInTheirOrder) {
   EXPECT_EQ(json_of(Value::List()).dump(), "[]");
 }
 
-TEST(Result, WhatIsNotANumberIsNullInJson) {
+TEST(Result, NonFiniteAndMissingNumbersAreNullInJson) {
   for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_TRUE(json_of(none).is_null());
     EXPECT_EQ(number(none, 3, "mm").text, "-");
@@ -57,7 +57,7 @@ TEST(Result, JsonKeepsEveryDigitAndTheTextRounds) {
   EXPECT_EQ(json_of(shown(0.5, "half")).dump(), "0.5");
 }
 
-TEST(Result, BytesThatAreNoUtf8DoNotStopTheWriter) {
+TEST(Result, InvalidUtf8IsReplacedInJson) {
   EXPECT_EQ(json_text({{"path", "a\xff"}}), "{\n  \"path\": \"a\xef\xbf\xbd\"\n}\n");
 }
 
@@ -79,7 +79,7 @@ TEST(Result, ATableWithoutRowsHasItsColumns) {
   EXPECT_TRUE(table.rows.empty());
 }
 
-TEST(Result, AMissingNumberIsOnTheRightLikeTheOthers) {
+TEST(Result, MissingNumbersAreAlignedLikeNumbers) {
   EXPECT_TRUE(number(std::nullopt).numeric);
   EXPECT_TRUE(Value(3).numeric);
   EXPECT_FALSE(shown(3, "three").numeric);
@@ -102,7 +102,7 @@ TEST(Result, ALaterFieldReplacesTheValueOfItsKey) {
   EXPECT_EQ(json_of(Fields{{"a", Value()}, {"b", 2}, {"a", 1}}).dump(), R"({"a":1,"b":2})");
 }
 
-TEST(Result, ListsAndObjectsAreMadeOfContainers) {
+TEST(Result, ContainersAreConvertedToListsAndObjects) {
   EXPECT_EQ(json_of(list_of(std::vector<Grip>{{"a", 1, true}}, fields_of)).dump(),
             R"([{"run":"a","error_mm":1.0,"healthy":true}])");
   EXPECT_EQ(json_of(keyed(std::map<std::string, double>{{"b", 2}, {"a", 1}})).dump(), R"({"a":1.0,"b":2.0})");

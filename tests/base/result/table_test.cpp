@@ -5,7 +5,7 @@
 namespace softgrip::result::table_test {
 namespace {
 
-TEST(Html, NothingActiveSurvives) {
+TEST(Html, EscapesMarkupAndControlCharacters) {
   EXPECT_EQ(escaped("<script>alert('x & \"y\"')</script>"),
             "&lt;script&gt;alert(&#39;x &amp; &quot;y&quot;&#39;)&lt;/script&gt;");
   EXPECT_EQ(escaped(std::string("a\0b\x1b", 4)),
@@ -13,7 +13,7 @@ TEST(Html, NothingActiveSurvives) {
             "b\xef\xbf\xbd");
 }
 
-TEST(Table, AsTextHasAlignedColumns) {
+TEST(Table, TextTableHasAlignedColumns) {
   const Table table{
       "Errors", {"run", "error"}, {false, true}, {{"a", "0.1"}, {"l\xc3\xa4nger", "\xe2\x80\x93"}}};
   EXPECT_EQ(text_of(table),
@@ -23,7 +23,7 @@ TEST(Table, AsTextHasAlignedColumns) {
             "  l\xc3\xa4nger      \xe2\x80\x93\n");
 }
 
-TEST(Html, NumbersAreOnTheRight) {
+TEST(Html, NumericCellsAreRightAligned) {
   const Table table{"a & b", {"run", "error", "note"}, {false, true}, {{"<x>", "0.1", "y"}}};
   EXPECT_EQ(html_of(table),
             "<div class=\"scroll\"><table><caption>a &amp; b</caption>\n"

@@ -32,7 +32,7 @@ double rmse_mm(const std::string& id) {
   return figure == nullptr ? 0 : figure->rmse_mm.median;
 }
 
-TEST(ControlStudy, TheTwinLooksNonInvertibleToThePublishedStructureAndNotToTheExtendedOne) {
+TEST(ControlStudy, OnlyTheExtendedStructureYieldsAnInvertibleModel) {
   EXPECT_GT(wrong_way_ratio(quick_study().identified), 1);
   EXPECT_LT(wrong_way_ratio(quick_study().extended), 1);
   EXPECT_LT(quick_study().extended_rmse_mm, 0.052);
@@ -52,7 +52,7 @@ TEST(ControlStudy, TheExtendedInverseIsTenTimesBetterThanPidAlone) {
   EXPECT_GT(rmse_mm("pid"), 10 * rmse_mm("full_extended"));
 }
 
-TEST(ControlStudy, APlanOnThePublishedModelIsThreeTimesBetterThanItsPid) {
+TEST(ControlStudy, PlannedFeedforwardReducesThePidErrorByAFactorOfThree) {
   EXPECT_GT(rmse_mm("pid_on_published"), 3 * rmse_mm("planned_on_published"));
 }
 
@@ -68,7 +68,7 @@ TEST(ControlStudy, EveryLoopKeepsTheMargin) {
   }
 }
 
-TEST(ControlStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
+TEST(ControlStudy, WritesValidJsonAndASelfContainedPage) {
   const auto json = nlohmann::json::parse(control_json(quick_study()));
   EXPECT_EQ(json.at("schemes").size(), quick_study().schemes.size());
   const std::string page = control_page(quick_study()).to_html();

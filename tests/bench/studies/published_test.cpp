@@ -19,12 +19,12 @@ model::Model configured(const std::string& name) {
   return *model;
 }
 
-TEST(StudyModels, AreThoseOfTheConfiguration) {
+TEST(StudyModels, EqualTheShippedModels) {
   EXPECT_EQ(published_model(2).blocks, configured("zhang2025").blocks);
   EXPECT_EQ(bench_twin().blocks, configured("bench_twin").blocks);
 }
 
-TEST(StudyModels, OrdinaryMeansThatItMovesTheRightWay) {
+TEST(StudyModels, OnlyThePublishedModelHasAnInverseResponse) {
   EXPECT_NEAR(wrong_way_ratio(ordinary_model(0.1, 0.05)), 0.5666, 1e-4);
   EXPECT_NEAR(wrong_way_ratio(published_model(2)), 2.33, 0.005);
 }
@@ -42,7 +42,7 @@ TEST(Triangles, StartAndEndAtRestAndStayInRange) {
   }
 }
 
-TEST(InvertibleMatch, FindsTheModelBehindALogThatObeysTheBound) {
+TEST(InvertibleMatch, FindsTheTrueModelWithinTheBound) {
   const model::Model truth = ordinary_model(0.08, 0.05);
   sysid::Log log = triangles(Triangles::rising, 50);
   simulate(truth, {}, log);
@@ -52,7 +52,7 @@ TEST(InvertibleMatch, FindsTheModelBehindALogThatObeysTheBound) {
   EXPECT_NEAR(wrong_way_ratio(found), wrong_way_ratio(truth), 1e-3);
 }
 
-TEST(InvertibleMatch, KeepsTheBoundWhereTheResponseWouldLeaveIt) {
+TEST(InvertibleMatch, KeepsTheRatioAtTheBoundForAnInverseResponse) {
   sysid::Log log = triangles(Triangles::rising, 50);
   simulate(published_model(2), {}, log);
   const model::Model found = invertible_match({log}, ordinary_model(0.06, 0.06), {0.8, 2, 1, 1});
@@ -84,7 +84,7 @@ TEST(PublishedStudy, LatencyRaisesTheFittedRatioBeyondOneAtASmallError) {
   EXPECT_LT(study.latency[2].rmse_mm, 0.005 * study.latency[2].span_mm);
 }
 
-TEST(PublishedStudy, ThePublishedResponseIsThatOfAnInvertibleActuatorBehindLatency) {
+TEST(PublishedStudy, AnInvertibleModelWithLatencyFitsThePublishedResponse) {
   for (const PublishedMatch& row : quick_study().matches) {
     EXPECT_LT(row.rmse_mm, 0.08) << row.eta_per_bar;
     EXPECT_LE(row.ratio, 0.8 * (1 + 1e-4)) << row.eta_per_bar;
@@ -92,7 +92,7 @@ TEST(PublishedStudy, ThePublishedResponseIsThatOfAnInvertibleActuatorBehindLaten
   }
 }
 
-TEST(PublishedStudy, TheExplicitInverseGrowsByBetaOverAlphaAndTheImplicitOneIsExactBelowOne) {
+TEST(PublishedStudy, TheImplicitInverseIsExactForRatiosBelowOne) {
   for (const InverseTrial& row : quick_study().inverses) {
     EXPECT_NEAR(row.growth, row.ratio, 1e-4);
     EXPECT_EQ(row.refused, row.ratio >= 1) << row.ratio;
@@ -109,7 +109,7 @@ TEST(PublishedStudy, TheExplicitInverseGrowsByBetaOverAlphaAndTheImplicitOneIsEx
   EXPECT_NEAR(quick_study().inverses.back().ratio, 2.43, 0.005);
 }
 
-TEST(PublishedStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
+TEST(PublishedStudy, WritesValidJsonAndASelfContainedPage) {
   const auto json = nlohmann::json::parse(published_json(quick_study()));
   EXPECT_EQ(json.at("hidden_latency").size(), 3U);
   EXPECT_EQ(json.at("hidden_latency")[1].at("ratio").get<double>(), quick_study().latency[1].ratio);
@@ -121,7 +121,7 @@ TEST(PublishedStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg"));
 }
 
-TEST(PaperTable, TheSameStructureLeavesTheNoiseAndLatencyLeavesMore) {
+TEST(PaperTable, LatencyIncreasesTheErrorAboveTheNoise) {
   const std::vector<PaperRow> rows = paper_table({1, 100, 0.05, 4, 1});
   ASSERT_EQ(rows.size(), 4U);
   EXPECT_EQ(rows[0].signal, model::SignalName::tp1);

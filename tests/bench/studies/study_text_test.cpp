@@ -7,12 +7,12 @@
 namespace softgrip::studies::study_text_test {
 namespace {
 
-TEST(StudyText, ACellIsFilledAtTheLeftAndNeverCut) {
+TEST(StudyText, PadsACellOnTheLeftAndNeverTruncates) {
   EXPECT_EQ(cell("0.5", 6), "   0.5");
   EXPECT_EQ(cell("longer", 3), "longer");
 }
 
-TEST(StudyText, EveryParameterStandsUnderItsPath) {
+TEST(StudyText, ListsEveryParameterUnderItsPath) {
   const model::Model model = bench_twin();
   const auto json = result::json_of(parameters_of(model));
   EXPECT_EQ(json.size(), model::flat_values(model).size());

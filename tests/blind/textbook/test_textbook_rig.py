@@ -72,7 +72,7 @@ class TextbookRig(unittest.TestCase):
         self.master.exchange([2.5, 1.25])
         self.assertEqual(self.master.exchange([2.5, 1.25], READ_BACK_AT, 2), (2.5, 1.25))
 
-    def test_it_ends_with_its_client(self):
+    def test_the_rig_process_ends_if_the_client_disconnects(self):
         self.master.exchange([0, 0])
         self.master.socket.close()
         self.assertEqual(self.process.wait(10), 0)

@@ -82,7 +82,7 @@ class Finger(unittest.TestCase):
                 for place in ("end", "rising"):
                     self.assertAlmostEqual(at[make, place], at[make, place + "_reference"], places=9)
 
-    def test_relays_counted_one_by_one_give_the_same(self):
+    def test_the_preisach_model_equals_a_sum_of_relays(self):
         rows = [{name: float(value) for name, value in row.items()} for row in probe("relays")]
         width, envelope, span_mm = (rows[0][name] for name in ("width", "envelope", "span_mm"))
         count = 120
@@ -136,12 +136,12 @@ class Campaign(unittest.TestCase):
     def test_the_same_seed_writes_the_same_bytes(self):
         self.assertEqual(world("--pressure", "--cause", "backlash"), world("--pressure", "--cause", "backlash"))
 
-    def test_another_campaign_is_of_the_same_finger(self):
+    def test_another_campaign_changes_the_logs_but_not_the_finger(self):
         (logs, truth), (others, other) = world(), world("--campaign", "1")
         self.assertNotEqual(logs, others)
         self.assertEqual((truth["make"], truth["span_mm"]), (other["make"], other["span_mm"]))
 
-    def test_read_twice_as_often_it_is_the_same_finger(self):
+    def test_twice_the_sample_rate_gives_the_same_displacements(self):
         usual, often = (displacements(world(*rate)[0][:1]) for rate in ((), ("--rate-hz", "200")))
         change = [a - b for a, b in zip(usual, often[::2])]
         self.assertIn(len(often), range(2 * len(usual) - 2, 2 * len(usual) + 1))
@@ -149,11 +149,11 @@ class Campaign(unittest.TestCase):
         # commands: the valve samples them at 100 Hz in one world and at 200 Hz in the other.
         self.assertLess(math.sqrt(sum(c * c for c in change) / len(change)), 0.07)
 
-    def test_columns_can_be_left_out(self):
+    def test_options_omit_the_temperature_and_supply_columns(self):
         logs, _ = world("--no-temperature", "--no-supply")
         self.assertEqual(logs[0].splitlines()[0], b"time_s,pressure_command_kpa,displacement_mm")
 
-    def test_every_make_has_every_value(self):
+    def test_logs_of_every_make_contain_only_finite_values(self):
         for make in output("--makes").split():
             logs, truth = world("--make", make, "--pressure")
             self.assertEqual(truth["make"], make)
@@ -161,7 +161,7 @@ class Campaign(unittest.TestCase):
                 for row in log.splitlines()[1:]:
                     self.assertTrue(all(math.isfinite(float(cell)) for cell in row.split(b",")), (make, row))
 
-    def test_own_physics_is_what_can_be_seen(self):
+    def test_listed_own_physics_effects_exceed_a_quarter_of_the_noise(self):
         for make in output("--makes").split():
             _, truth = world("--make", make)
             with self.subTest(make=make):
@@ -177,7 +177,7 @@ class Strength(unittest.TestCase):
         causes = ",".join(output("--list").split())
         return world("--cause", causes, "--strength", str(strength), seed=seed)[1]["effects"]
 
-    def test_every_cause_is_as_strong_as_asked(self):
+    def test_every_cause_has_the_requested_strength(self):
         for seed in STRENGTH_SEEDS:
             for strength in (2, 8):
                 effects = self.effects(strength, seed)

@@ -22,7 +22,7 @@ class Judge(unittest.TestCase):
         self.assertEqual(result, {"found": [], "alone": [], "wrong": [], "outcome": "right"})
         self.assertEqual(judged(["contact"], ["valve_lag"])["outcome"], "missed")
 
-    def test_a_name_that_nothing_bears_out_is_wrong_beside_a_right_one_too(self):
+    def test_an_unsupported_cause_is_wrong_even_beside_a_correct_cause(self):
         result = judged(["contact"], ["contact"], ["inertia", "sensor_lag"])
         self.assertEqual(result, {"found": ["contact"], "alone": ["contact"], "wrong": ["inertia"], "outcome": "wrong"})
         self.assertEqual(judged([], ["contact"])["outcome"], "wrong")
@@ -31,20 +31,20 @@ class Judge(unittest.TestCase):
         result = judged(["contact"], ["sensor_saturation", "contact"], verdict="ambiguous")
         self.assertEqual((result["found"], result["alone"], result["outcome"]), (["contact"], [], "ambiguous_right"))
 
-    def test_a_name_finds_one_cause_at_most(self):
+    def test_a_named_cause_counts_for_at_most_one_hidden_cause(self):
         result = judged(["contact", "sensor_saturation"], ["contact", "sensor_saturation"])
         self.assertEqual((len(result["found"]), result["outcome"]), (1, "partly"))
         result = judged(["contact", "sensor_saturation"], ["contact", "sensor_saturation"], ["contact"])
         self.assertEqual(sorted(result["found"]), ["contact", "sensor_saturation"])
 
-    def test_all_of_several_are_right_and_partly_explained_counts_with_what_it_names(self):
+    def test_a_partly_explained_verdict_that_names_all_causes_is_right(self):
         result = judged(["contact", "backlash"], ["backlash"], ["contact"], ["slow_creep"], verdict="partly_explained")
         self.assertEqual(result["outcome"], "right")
 
     def test_a_hidden_cause_that_is_own_physics_too_counts_as_found(self):
         self.assertEqual(judged(["valve_lag"], ["valve_lag"])["outcome"], "right")
 
-    def test_structure_that_stays_without_a_name_is_told_apart(self):
+    def test_an_unexplained_verdict_has_a_separate_outcome(self):
         self.assertEqual(judged([], verdict="unexplained")["outcome"], "unexplained")
         self.assertEqual(judged([], verdict="adequate")["outcome"], "right")
 

@@ -13,7 +13,7 @@ namespace {
 
 using Mode = ChannelDemand::Mode;
 
-TEST(ChannelControllerAllocation, TheHookSeesAnAllocation) {
+TEST(ChannelControllerAllocation, TheCounterDetectsAnAllocation) {
   std::vector<int> kept;
   EXPECT_GT(test::allocations_of([&] { kept.resize(100); }), 0U);
 }

@@ -8,7 +8,7 @@
 namespace softgrip::control {
 namespace {
 
-TEST(TickAllocation, NoneInAnyState) {
+TEST(TickAllocation, NoTickAllocatesMemoryInAnyState) {
   const RigSettings settings = two_finger_settings();
   SimulatedRig rig(settings);
   rig.around_tick = test::count_allocations;
@@ -47,7 +47,7 @@ TEST(TickAllocation, NoneInAnyState) {
 
 // Tests a motion along a plan, a grip whose second attempt moves back without a plan, and a second start of
 // the sequence.
-TEST(TickAllocation, NoneOfAPlan) {
+TEST(TickAllocation, NoTickOfAPlannedMotionAllocatesMemory) {
   RigSettings settings = two_finger_settings();
   for (ChannelSettings& channel : settings.channels) channel.feedforward.kind = FeedforwardKind::planned;
   SimulatedRig rig(settings);

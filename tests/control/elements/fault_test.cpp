@@ -77,7 +77,7 @@ std::string table() {
   return out.str();
 }
 
-TEST(Faults, TheManualSaysWhatTheCodeSays) {
+TEST(Faults, TheManualTablesEqualTheTablesOfTheCode) {
   std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/faults.md");
   const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   EXPECT_NE(manual.find(table()), std::string::npos)

@@ -18,7 +18,7 @@ bool held_after(double expected_mm, double share) {
   return watch.held();
 }
 
-TEST(FollowWatch, WhatStaysIsHeldAndWhatGoesOnHasChanged) {
+TEST(FollowWatch, ReportsHeldForMotionOf40PercentAndNotFor70Percent) {
   EXPECT_TRUE(held_after(5, 0));
   EXPECT_TRUE(held_after(5, 0.4)) << "the finger moves by only 40 % of the model's motion";
   EXPECT_FALSE(held_after(5, 0.7));
@@ -26,11 +26,11 @@ TEST(FollowWatch, WhatStaysIsHeldAndWhatGoesOnHasChanged) {
       << "the finger follows the model sufficiently, also while the pressure falls";
 }
 
-TEST(FollowWatch, BeforeTheModelHasMovedNobodyKnows) {
+TEST(FollowWatch, AssumesHeldUntilTheModelHasMovedEnough) {
   EXPECT_TRUE(held_after(0.5, 0.9));
 }
 
-TEST(FollowWatch, WithoutATouchNothingHolds) {
+TEST(FollowWatch, ReportsHeldOnlyWhileContactIsDetected) {
   FollowWatch watch;
   EXPECT_FALSE(watch.held());
   watch.observe(true, 4, 5);
@@ -39,7 +39,7 @@ TEST(FollowWatch, WithoutATouchNothingHolds) {
   EXPECT_FALSE(watch.held());
 }
 
-TEST(FollowWatch, WhatIsNotKnownChangesNothing) {
+TEST(FollowWatch, AnUnknownDisplacementDoesNotChangeTheState) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   FollowWatch watch;
   watch.observe(true, unknown, 5);

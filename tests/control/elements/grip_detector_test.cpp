@@ -24,14 +24,14 @@ TEST(Contact, HasHysteresis) {
   EXPECT_FALSE(contact.touching());
 }
 
-TEST(Contact, LearnsNothingFromADeficitThatIsNotKnown) {
+TEST(Contact, AnUnknownShortfallKeepsTheContactState) {
   Contact contact(1);
   contact.observe(2);
   contact.observe(std::nan(""));
   EXPECT_TRUE(contact.touching());
 }
 
-TEST(EvidenceWindow, NeedsTheWholeWindow) {
+TEST(EvidenceWindow, VerifiesOnlyAfterAWholeWindowOfEvidence) {
   EvidenceWindow window;
   window.start(0, 0.3);
   double verified_at = -1;
@@ -46,7 +46,7 @@ TEST(EvidenceWindow, NeedsTheWholeWindow) {
   EXPECT_NEAR(verified_at, 0.8, 0.06);
 }
 
-TEST(EvidenceWindow, RefutesOnlyWhatWasNeverThere) {
+TEST(EvidenceWindow, RefutesOnlyAfterAWholeWindowWithoutEvidence) {
   EvidenceWindow window;
   window.start(0, 0.3);
   EXPECT_EQ(window.observe(0, true, false), EvidenceWindow::Verdict::pending);
@@ -56,7 +56,7 @@ TEST(EvidenceWindow, RefutesOnlyWhatWasNeverThere) {
   EXPECT_EQ(window.observe(0.61, true, false), EvidenceWindow::Verdict::refuted);
 }
 
-TEST(EvidenceWindow, SamplesThatSayNothingStartItAnew) {
+TEST(EvidenceWindow, AnUnusableSampleRestartsTheWindow) {
   EvidenceWindow window;
   window.start(0, 0.3);
   (void)window.observe(0, true, true);
@@ -65,7 +65,7 @@ TEST(EvidenceWindow, SamplesThatSayNothingStartItAnew) {
   EXPECT_EQ(window.observe(0.66, true, true), EvidenceWindow::Verdict::verified);
 }
 
-TEST(EvidenceWindow, KnowsThatItCouldNotLook) {
+TEST(EvidenceWindow, IsBlindedForOneWindowAfterAnUnusableSample) {
   EvidenceWindow window;
   window.start(0, 0.3);
   (void)window.observe(0.1, true, false);
@@ -78,7 +78,7 @@ TEST(EvidenceWindow, KnowsThatItCouldNotLook) {
   EXPECT_FALSE(window.blinded(0.3));
 }
 
-TEST(HoldWatch, TellsALossWithinTwoIntervalsWheneverItHappens) {
+TEST(HoldWatch, ReportsALossWithinTwoIntervals) {
   for (double gone_at = 1; gone_at < 1.5; gone_at += 0.013) {
     HoldWatch watch;
     watch.start(0, 0.25, 0.5);
@@ -94,7 +94,7 @@ TEST(HoldWatch, TellsALossWithinTwoIntervalsWheneverItHappens) {
   }
 }
 
-TEST(HoldWatch, IntervalsWithoutReadingsSayNothing) {
+TEST(HoldWatch, IntervalsWithoutReadingsReportNoLoss) {
   HoldWatch watch;
   watch.start(0, 0.25, 0.5);
   for (int i = 0; i < 1000; ++i) {
@@ -137,7 +137,7 @@ double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
 
 /// The detection margin must be at least three times the RMS error of the model. With this margin, even an
 /// inaccurate model must cause no wrong grip result.
-TEST(GripDetection, AMarginOfThreeTimesTheRmseIsEnoughForModelsThatAreOff) {
+TEST(GripDetection, AMarginOf3RmseGivesRightResultsWithInaccurateModels) {
   double worst_mm = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

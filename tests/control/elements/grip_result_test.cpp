@@ -9,7 +9,7 @@ namespace {
 
 using enum control::GripResult;
 
-TEST(OverallResult, IsTheWorstOfAnyOrWhatIsTrueOfAll) {
+TEST(OverallResult, IsTheWorstFailureElseTheResultThatAllFingersShare) {
   const auto of = [](const std::vector<control::GripResult>& results) {
     return overall_result(results, ~0U);
   };

@@ -39,7 +39,7 @@ double square(double time_s, double interval_s) {
   return std::fmod(time_s, 2 * interval_s) < interval_s ? 0 : 5;
 }
 
-TEST(JumpWatch, TenJumpsASecondAreUnsteadyUntilItHasBeenCalm) {
+TEST(JumpWatch, TenJumpsPerSecondAreUnsteadyUntilTheCalmTimeEnds) {
   Watched finger;
   EXPECT_TRUE(finger.run(1, [](double t) { return square(t, 0.1); }));
   EXPECT_NEAR(std::abs(finger.watch.last_jump_mm()), 5, 1e-9);
@@ -50,23 +50,23 @@ TEST(JumpWatch, TenJumpsASecondAreUnsteadyUntilItHasBeenCalm) {
   EXPECT_FALSE(finger.run(5, [](double) { return 0; }));
 }
 
-TEST(JumpWatch, WhileTheFingerMovesToo) {
+TEST(JumpWatch, DetectsJumpsWhileTheFingerMoves) {
   Watched finger;
   EXPECT_TRUE(finger.run(
       2, [](double t) { return square(t, 0.1); }, [](double t) { return 10 + 8 * std::sin(3 * t); }));
 }
 
-TEST(JumpWatch, APartThatSlipsAgainAndAgainJumpsOneWay) {
+TEST(JumpWatch, RepeatedJumpsInOneDirectionAreNotUnsteady) {
   Watched finger;
   EXPECT_FALSE(finger.run(3, [](double t) { return 3 * std::floor(t / 0.2); }));
 }
 
-TEST(JumpWatch, APartThatIsPushedInAndPulledOutIsNoSensorsFault) {
+TEST(JumpWatch, SlowJumpsBackAndForthAreNotUnsteady) {
   Watched finger;
   EXPECT_FALSE(finger.run(6, [](double t) { return square(t, 0.6); }));
 }
 
-TEST(JumpWatch, NoiseAndFastMotionAreNone) {
+TEST(JumpWatch, NoiseAndPredictedFastMotionAreNotUnsteady) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 0.3);
   Watched finger;
@@ -75,19 +75,19 @@ TEST(JumpWatch, NoiseAndFastMotionAreNone) {
       << "successive readings differ by up to 1.8 mm, but the model predicts this motion";
 }
 
-TEST(JumpWatch, AFingerThatIsHeldWhileItsModelMovesDoesNotJump) {
+TEST(JumpWatch, AConstantReadingDoesNotJumpWhileTheModelMoves) {
   JumpWatch watch{PlausibilitySettings{}};
   for (double t = 1; t < 5; t += tick_s) watch.observe(nanoseconds(t), 4, 10 + 20 * std::sin(20 * t));
   EXPECT_FALSE(watch.unsteady());
 }
 
-TEST(JumpWatch, AcrossAGapNothingJumps) {
+TEST(JumpWatch, AJumpAcrossAGapInTheReadingsDoesNotCount) {
   JumpWatch watch{PlausibilitySettings{}};
   for (int i = 0; i < 40; ++i) watch.observe(nanoseconds(1 + 0.1 * i), i % 2 == 0 ? 0 : 5, 0);
   EXPECT_FALSE(watch.unsteady()) << "a jump from a reading older than max_age_s does not count";
 }
 
-TEST(JumpWatch, TheThresholdsAreTheSettings) {
+TEST(JumpWatch, JumpSizeAndCountThresholdsComeFromTheSettings) {
   PlausibilitySettings settings;
   settings.jump_mm = 6;
   JumpWatch coarse(settings);
@@ -102,7 +102,7 @@ TEST(JumpWatch, TheThresholdsAreTheSettings) {
   EXPECT_FALSE(patient.unsteady()) << "10 jumps per second are fewer than the 12 that the settings require";
 }
 
-TEST(JumpWatch, ForgetsWhenReset) {
+TEST(JumpWatch, ResetClearsTheUnsteadyStateAndTheLastJump) {
   Watched finger;
   finger.run(1, [](double t) { return square(t, 0.1); });
   finger.watch.reset();

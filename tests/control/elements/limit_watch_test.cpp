@@ -22,26 +22,26 @@ std::vector<std::string> told(double seconds, Binds&& binds) {
   return all;
 }
 
-TEST(LimitWatch, AMomentIsNotTold) {
+TEST(LimitWatch, ALimitActiveFor400MsIsNotReported) {
   EXPECT_TRUE(told(2, [](double t) {
                 return t > 0.5 && t < 0.9 ? BindingLimit::rig_pressure : BindingLimit::none;
               }).empty());
 }
 
-TEST(LimitWatch, WhatLastsIsToldOnceAndSoIsItsEnd) {
+TEST(LimitWatch, ALastingLimitIsReportedOnceAndClearedOnce) {
   const auto all =
       told(5, [](double t) { return t > 1 && t < 4 ? BindingLimit::step_squeeze : BindingLimit::none; });
   EXPECT_EQ(all, (std::vector<std::string>{"step_squeeze", "none"}));
 }
 
-TEST(LimitWatch, AnotherLimitThatTakesItsPlaceIsToldWhenItHasLasted) {
+TEST(LimitWatch, ALimitThatReplacesAnotherLimitIsReported) {
   const auto all = told(6, [](double t) {
     return t > 4 ? BindingLimit::none : t > 2 ? BindingLimit::rig_pressure : BindingLimit::rig_slew_up;
   });
   EXPECT_EQ(all, (std::vector<std::string>{"rig_slew_up", "rig_pressure", "none"}));
 }
 
-TEST(LimitWatch, TwoLimitsThatTakeTurnsAreToldOnce) {
+TEST(LimitWatch, TwoAlternatingLimitsAreReportedAsOneLimit) {
   int tick = 0;
   const auto all = told(5, [&](double t) {
     const BindingLimit one = ++tick % 2 == 0 ? BindingLimit::step_pressure : BindingLimit::step_squeeze;
@@ -51,14 +51,14 @@ TEST(LimitWatch, TwoLimitsThatTakeTurnsAreToldOnce) {
   EXPECT_EQ(all.back(), "none");
 }
 
-TEST(LimitWatch, EveryLimitHasANameAndWords) {
+TEST(LimitWatch, ALimitHasANameAndATextAndNoneHasNoText) {
   EXPECT_EQ(name_of(BindingLimit::rig_slew_down), "rig_slew_down");
   EXPECT_EQ(words_of(BindingLimit::rig_slew_up),
             "slew_up_kpa_per_s of the rig limits the rate of the pressure");
   EXPECT_TRUE(words_of(BindingLimit::none).empty());
 }
 
-TEST(LimitWatch, NoiseAcrossTheCeilingIsOneLimit) {
+TEST(LimitWatch, ALimitThatTogglesWithNoiseIsReportedOnce) {
   int tick = 0;
   const auto all = told(5, [&](double t) {
     return t < 3 && ++tick % 3 == 0 ? BindingLimit::step_pressure : BindingLimit::none;

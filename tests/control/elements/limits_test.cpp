@@ -13,7 +13,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr LimitSettings typical{0, 60, 200, 400, 0, 25, 0.5};
 
-TEST(Limits, PassesWhatIsInside) {
+TEST(Limits, PassesACommandWithinAllLimits) {
   const LimitedCommand command = limit(typical, 20.5, 20, 0.005);
   EXPECT_EQ(command.command_kpa, 20.5);
   EXPECT_FALSE(command.saturated || command.slewing || command.invalid);
@@ -25,7 +25,7 @@ TEST(Limits, SlewIsAsymmetric) {
   EXPECT_TRUE(limit(typical, 0, 20, 0.005).slewing);
 }
 
-TEST(Limits, ACeilingIsKeptAndGoneToAtTheSlewLimit) {
+TEST(Limits, TheCommandMovesToACeilingAtTheSlewLimit) {
   const LimitedCommand capped = limit(typical, 30, 20, 0.05, 25);
   EXPECT_EQ(capped.command_kpa, 25);
   EXPECT_TRUE(capped.capped);
@@ -37,13 +37,13 @@ TEST(Limits, ACeilingIsKeptAndGoneToAtTheSlewLimit) {
   EXPECT_FALSE(limit(typical, 24, 20, 0.05, 25).capped);
 }
 
-TEST(Limits, ACeilingThatIsNoNumberHoldsTheLastCommand) {
+TEST(Limits, ANaNCeilingHoldsTheLastCommand) {
   const LimitedCommand command = limit(typical, 40, 33, 0.005, nan);
   EXPECT_EQ(command.command_kpa, 33);
   EXPECT_TRUE(command.invalid);
 }
 
-TEST(Limits, TellsRangeFromSlew) {
+TEST(Limits, ReportsSaturationAndSlewingSeparately) {
   const LimitedCommand range = limit(typical, 61, 60, 0.005);
   EXPECT_EQ(range.command_kpa, 60);
   EXPECT_TRUE(range.saturated);
@@ -53,7 +53,7 @@ TEST(Limits, TellsRangeFromSlew) {
   EXPECT_TRUE(both.slewing);
 }
 
-TEST(Limits, WhatIsNoNumberHoldsTheLastCommand) {
+TEST(Limits, ANaNRequestHoldsTheCommandAndInfinitySlews) {
   const LimitedCommand command = limit(typical, nan, 33, 0.005);
   EXPECT_EQ(command.command_kpa, 33);
   EXPECT_TRUE(command.invalid);
@@ -62,7 +62,7 @@ TEST(Limits, WhatIsNoNumberHoldsTheLastCommand) {
   EXPECT_TRUE(limit(typical, infinity, 33, 0.005).saturated);
 }
 
-TEST(Limits, ReferenceAndReading) {
+TEST(Limits, ClampsTheReferenceAndChecksTheReading) {
   EXPECT_EQ(limit_reference(typical, 26).reference_mm, 25);
   EXPECT_TRUE(limit_reference(typical, 26).clamped);
   EXPECT_FALSE(limit_reference(typical, 25).clamped);
@@ -87,7 +87,7 @@ TEST(Limits, RestIsZeroOrTheNearestEndOfTheRange) {
   EXPECT_EQ(far_end_kpa(vacuum), 60);
 }
 
-TEST(Limits, NoFurtherFromRestThanABoundAndOnItsSide) {
+TEST(Limits, NoFurtherKeepsThePressureBetweenRestAndBound) {
   EXPECT_EQ(no_further(0, 20, 12), 12);
   EXPECT_EQ(no_further(0, 5, 12), 5);
   EXPECT_EQ(no_further(0, -5, 12), 0)
@@ -101,12 +101,12 @@ TEST(Limits, NoFurtherFromRestThanABoundAndOnItsSide) {
   EXPECT_EQ(no_further(0, -20, infinity), -20);
 }
 
-TEST(Limits, WithoutAUsableLastCommandItBeginsAtRest) {
+TEST(Limits, StartsAtRestIfTheLastCommandIsNaN) {
   EXPECT_EQ(limit(vacuum, nan, nan, 0.005).command_kpa, 0);
   EXPECT_EQ(limit(vacuum, -40, nan, 0.005).command_kpa, -2);
 }
 
-TEST(Limits, ACeilingDoesNotEvacuate) {
+TEST(Limits, ACeilingNeverPullsTheCommandBelowRest) {
   EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0)
       << "the command falls to the rest pressure, but not below it";
   EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0)

@@ -130,7 +130,7 @@ TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
 }
 
 // Without whitening of the residual, the same threshold must cause many more false alarms.
-TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
+TEST(ModelHealth, ACusumWithoutWhiteningAlarmsMoreOften) {
   ModelHealthSettings settings = short_intervals();
   settings.correlation_time_s = 5;
   const double threshold = cusum_threshold(0.5, 2000);
@@ -151,7 +151,7 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
       << "without a change, the stated false-alarm rate would give a mean of 2000 intervals between alarms";
 }
 
-TEST(ModelHealth, FindsAnAgeingFinger) {
+TEST(ModelHealth, DetectsAResidualShiftAndRecovers) {
   const ModelHealthSettings settings = short_intervals();  // these settings have an average time between
                                                            // false alarms of 1000 h
   HealthyResidual residual(settings, 5);
@@ -170,7 +170,7 @@ TEST(ModelHealth, FindsAnAgeingFinger) {
   EXPECT_EQ(health.state(), HealthState::healthy);
 }
 
-TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
+TEST(ModelHealth, ALargeResidualChangesTheStateToUnfitOnce) {
   const ModelHealthSettings settings = short_intervals();
   ModelHealth health(settings, tick_s);
   int changes = 0;
@@ -185,7 +185,7 @@ TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
   EXPECT_EQ(health.state(), HealthState::healthy);
 }
 
-TEST(ModelHealth, GapsAreNotCounted) {
+TEST(ModelHealth, IntervalsWithTooFewReadingsAreNotEvaluated) {
   const ModelHealthSettings settings = short_intervals();
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();

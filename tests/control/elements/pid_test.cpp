@@ -52,7 +52,7 @@ TEST(Pid, ProportionalActsOnTheWeightedSetpoint) {
   EXPECT_DOUBLE_EQ(pid.step(10, 4, 0), 2 * (5.0 - 4));
 }
 
-TEST(Pid, IntegralIsTheTrapezoid) {
+TEST(Pid, IntegralUsesTheTrapezoidalRule) {
   Pid pid({0, 3, 0, 0, 1, AntiWindup::none, 1}, tick_s);
   double exact = 0;
   for (int i = 0; i <= 1000; ++i) {
@@ -78,7 +78,7 @@ TEST(Pid, DerivativeIgnoresTheReference) {
   EXPECT_EQ(pid.step(20, 1, 0), 0);
 }
 
-TEST(Pid, AntiWindupForgetsHowLongTheCommandWasCut) {
+TEST(Pid, AntiWindupRecoveryDoesNotDependOnSaturationTime) {
   const LimitSettings limits{0, 60, 1000, 1000, 0, 50, 1};
   for (const double share : {0.0, 0.4, 0.7}) {
     SCOPED_TRACE(share);
@@ -93,7 +93,7 @@ TEST(Pid, AntiWindupForgetsHowLongTheCommandWasCut) {
   }
 }
 
-TEST(Pid, AntiWindupKnowsTheSlewLimits) {
+TEST(Pid, AntiWindupShortensRecoveryFromTheSlewLimits) {
   const LimitSettings slow{0, 200, 15, 15, 0, 100, 1};
   const double none = recovery_s(AntiWindup::none, 0, 4, slow);
   EXPECT_LT(recovery_s(AntiWindup::conditional, 0, 4, slow), 0.8 * none);
@@ -111,7 +111,7 @@ TEST(Pid, AnAlignedStartContinuesTheCommand) {
   EXPECT_NEAR(next, 31.7 + 8 * tick_s * 17, 1e-9);
 }
 
-TEST(Pid, AlignWaitsForAMeasurementWhileTheFeedforwardGoesOn) {
+TEST(Pid, AlignKeepsTheFeedbackUntilTheFirstMeasurement) {
   Pid pid(typical, tick_s);
   pid.align(25);
   EXPECT_NEAR(10 + pid.hold(10), 25, 1e-12);
@@ -129,7 +129,7 @@ TEST(Pid, AGapInTheReadingsHoldsTheFeedback) {
   EXPECT_NEAR(pid.step(10, 4.98, 0), feedback, 0.5);
 }
 
-TEST(Pid, WithoutAnIntegralPartACutLeavesNoBias) {
+TEST(Pid, SaturationLeavesNoBiasWithoutAnIntegralPart) {
   Pid pid({2, 0, 0, 0, 1, AntiWindup::back_calculation, 0.2}, tick_s);
   for (int i = 0; i < 1000; ++i) {
     (void)pid.step(40, 0, 0);

@@ -31,13 +31,13 @@ struct Channel {
   }
 };
 
-TEST(Plausibility, ASteadyFingerIsValid) {
+TEST(Plausibility, ASmoothlyMovingReadingIsValid) {
   Channel channel;
   for (int i = 0; i < 1000; ++i)
     ASSERT_EQ(channel.next(5 + 0.5 * std::sin(0.05 * i), 0.01 * i), Validity::valid);
 }
 
-TEST(Plausibility, WhatTheDriverFoundStands) {
+TEST(Plausibility, KeepsTheValidityThatTheDriverReported) {
   Plausibility judge(typical);
   Reading reading;
   EXPECT_EQ(judge.judge(reading, 5, 0), Validity::none_yet);
@@ -45,7 +45,7 @@ TEST(Plausibility, WhatTheDriverFoundStands) {
   EXPECT_EQ(judge.judge(reading, 5, 0), Validity::sensor_error);
 }
 
-TEST(Plausibility, NoNumberIsOutOfRange) {
+TEST(Plausibility, ANaNReadingIsOutOfRange) {
   Channel channel;
   EXPECT_EQ(channel.next(std::numeric_limits<double>::quiet_NaN()), Validity::out_of_range);
 }
@@ -57,7 +57,7 @@ TEST(Plausibility, AnOldReadingIsStale) {
   EXPECT_EQ(channel.next(5), Validity::valid);
 }
 
-TEST(Plausibility, AJumpIsNotBelievedUntilTheFingerCouldHaveMadeIt) {
+TEST(Plausibility, AJumpIsInvalidUntilTheSpeedLimitPermitsTheMotion) {
   Channel channel;
   EXPECT_EQ(channel.next(5), Validity::valid);
   EXPECT_EQ(channel.next(6.4), Validity::valid)
@@ -83,7 +83,7 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
 
 // If a part stops a finger, the displacement is constant, but the noise of the sensor still changes the
 // reading. If the reading of a sensor that normally has noise is constant, the reading is frozen.
-TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheFreeFingerMoves) {
+TEST(Plausibility, ANoisySensorIsFrozenIfConstantWhileTheModelMoves) {
   for (const bool lively : {true, false}) {
     Channel channel;
     for (int i = 0; i < 1000; ++i) (void)channel.next(5 + 0.01 * ((lively ? i : i / 40) % 3));
@@ -104,7 +104,7 @@ TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheF
   }
 }
 
-TEST(Plausibility, ALivelySensorBesideAModelThatHardlyMovesIsNotFrozen) {
+TEST(Plausibility, AConstantReadingIsNotFrozenIfTheModelMovesUnder2Mm) {
   Channel channel;
   for (int i = 0; i < 1000; ++i) (void)channel.next(5 + 0.01 * (i % 3));
   for (int i = 0; i < 1000; ++i) {
@@ -112,7 +112,7 @@ TEST(Plausibility, ALivelySensorBesideAModelThatHardlyMovesIsNotFrozen) {
   }
 }
 
-TEST(Plausibility, FreezingNeedsTheWholeTimeWithoutAChange) {
+TEST(Plausibility, AReadingThatChangesWithinTheFreezeTimeIsValid) {
   Channel channel;
   for (int i = 0; i < 2000; ++i) {
     ASSERT_EQ(channel.next(i / 90 % 2 == 0 ? 5 : 5.01, 0.05 * i), Validity::valid) << i;

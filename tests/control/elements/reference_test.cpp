@@ -34,7 +34,7 @@ double largest_step(const Reference& reference, double from_s, double to_s, doub
   return largest;
 }
 
-TEST(Reference, HoldsWhereItStarted) {
+TEST(Reference, HoldsTheStartValueWithoutSegments) {
   Reference reference;
   reference.start(5, 7.5);
   EXPECT_EQ(reference.at(0).value, 7.5);
@@ -44,7 +44,7 @@ TEST(Reference, HoldsWhereItStarted) {
   EXPECT_EQ(reference.end_s(), 5);
 }
 
-TEST(Reference, TheValueAloneIsTheValueOfThePoint) {
+TEST(Reference, ValueAtEqualsTheValueOfThePoint) {
   Reference reference;
   reference.start(1, 2);
   EXPECT_EQ(reference.value_at(5), reference.at(5).value);
@@ -81,7 +81,7 @@ TEST(Reference, SegmentsFollowEachOtherWithoutAStep) {
   EXPECT_NEAR(reference.at(sine_start + 1.25).rate, 7 * 2 * std::numbers::pi * 0.2, 1e-9);
 }
 
-TEST(Reference, ACutInMotionGoesOnWithoutAStepAndBrakesFirst) {
+TEST(Reference, ACutDuringAMotionIsContinuousUpToAcceleration) {
   Reference reference;
   reference.start(0, 0);
   ASSERT_TRUE(reference.ramp_to(20, 30));
@@ -98,7 +98,7 @@ TEST(Reference, ACutInMotionGoesOnWithoutAStepAndBrakesFirst) {
   EXPECT_NEAR(reference.final_value(), 3, 1e-9);
 }
 
-TEST(Reference, ACutBehindTheEndHoldsUntilThere) {
+TEST(Reference, ACutAfterTheEndHoldsTheFinalValueUntilTheCut) {
   Reference reference;
   reference.start(0, 1);
   ASSERT_TRUE(reference.ramp_for(2, 1));
@@ -114,7 +114,7 @@ TEST(Reference, ACutBehindTheEndHoldsUntilThere) {
   EXPECT_NEAR(at_rest.at(5).value, 1, 1e-9);
 }
 
-TEST(Reference, ForgettingMakesRoomAndKeepsTheFuture) {
+TEST(Reference, ForgettingFreesSegmentsAndKeepsLaterValues) {
   Reference reference;
   reference.start(0, 0);
   for (std::size_t i = 0; i < Reference::capacity; ++i) {
@@ -129,7 +129,7 @@ TEST(Reference, ForgettingMakesRoomAndKeepsTheFuture) {
   EXPECT_NEAR(reference.at(9).value, 0, 1e-12);
 }
 
-TEST(Reference, RefusesWhatHasNoMeaning) {
+TEST(Reference, RefusesInvalidSpeedsDurationsAndFrequencies) {
   Reference reference;
   EXPECT_FALSE(reference.ramp_to(1, 0));
   EXPECT_FALSE(reference.ramp_for(1, 0));
@@ -139,7 +139,7 @@ TEST(Reference, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(reference.at(3).value, 0);
 }
 
-TEST(Reference, WhatFindsNoRoomChangesNothing) {
+TEST(Reference, ARefusedSegmentChangesNothingAtFullCapacity) {
   Reference reference;
   reference.start(0, 0);
   for (std::size_t i = 1; i <= Reference::capacity; ++i) {
@@ -154,7 +154,7 @@ TEST(Reference, WhatFindsNoRoomChangesNothing) {
   EXPECT_EQ(reference.final_value(), static_cast<double>(Reference::capacity));
 }
 
-TEST(Reference, ARampToWhereItIsTakesNoTimeAndAnswersYes) {
+TEST(Reference, ARampToTheCurrentValueTakesNoTime) {
   Reference reference;
   reference.start(2, 5);
   EXPECT_TRUE(reference.ramp_to(5, 10));
@@ -163,7 +163,7 @@ TEST(Reference, ARampToWhereItIsTakesNoTimeAndAnswersYes) {
   EXPECT_FALSE(reference.sine(1, 1, 1, 0)) << "a sine needs at least one cycle";
 }
 
-TEST(Reference, OneThatIsAlreadyGoingBrakesAndThenGoes) {
+TEST(Reference, ARampFromAMovingStartReachesTheTarget) {
   Reference reference;
   reference.start(0, {5, 20, 0});
   ASSERT_TRUE(reference.ramp_to(5, 10));
@@ -177,7 +177,7 @@ TEST(Reference, OneThatIsAlreadyGoingBrakesAndThenGoes) {
 }
 
 // The reference must remain continuous while segments are removed and appended at random.
-TEST(Reference, NeverStepsUnderRandomUse) {
+TEST(Reference, StaysContinuousUnderRandomCutsAndRamps) {
   const unsigned seed = 20250117;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);

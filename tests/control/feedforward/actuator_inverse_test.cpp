@@ -42,7 +42,7 @@ model::Model play_body() {
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {1.5, 30}});
 }
 
-TEST(ActuatorInverse, OfPlaysIsTheIdentityOverAHundredThousandSteps) {
+TEST(ActuatorInverse, RecoversThePressureOfPlayOperatorsOver100000Steps) {
   const model::Model body = play_body();
   ASSERT_TRUE(model::validate(body).empty()) << model::validate(body).front();
   ActuatorInverse inverse(body, tick_s);
@@ -67,7 +67,7 @@ TEST(ActuatorInverse, OfPlaysIsTheIdentityOverAHundredThousandSteps) {
   EXPECT_LT(worst_kpa, 1e-7) << "seed 31";
 }
 
-TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {
+TEST(ActuatorInverse, TheModelWithTheInverseReproducesTheReference) {
   const model::Model body = body_of(model_named("bench_twin"));
   ActuatorInverse inverse(body, tick_s);
   model::Chain<double> finger(body, {}, tick_s);
@@ -142,7 +142,7 @@ TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
 
 // The slope of the actuator has a kink at the present pressure, because a change of direction begins there.
 // The iteration does not check its last step, so the last step must not cross the kink.
-TEST(ActuatorInverse, ATurnRightBesideTheGuessIsExactToo) {
+TEST(ActuatorInverse, SolvesExactlyCloseToADirectionChange) {
   ActuatorInverse inverse(body_of(model_named("bench_twin")), tick_s);
   for (const double pressure : {20.0, 40.0 - 2e-6, 40.0 - 1e-6, 40.0}) inverse.advance(pressure);
   for (const double turn : {1e-6, 4e-6, 1e-5, 1.5e-5}) {
@@ -151,7 +151,7 @@ TEST(ActuatorInverse, ATurnRightBesideTheGuessIsExactToo) {
   }
 }
 
-TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
+TEST(ActuatorInverse, AnUnreachableReferenceGivesTheBoundWithoutWindUp) {
   const model::Model body = body_of(model_named("bench_twin"));
   ActuatorInverse inverse(body, tick_s);
   for (int k = 0; k < 400; ++k) inverse.advance(0.15 * std::min(k, 300));

@@ -77,7 +77,7 @@ Outcome run_alone(const model::Model& model, const FeedforwardSettings& settings
   return run;
 }
 
-TEST(FullModelFeedforward, TracksAFingerThatIsTheModel) {
+TEST(FullModelFeedforward, TracksAFingerThatEqualsTheModel) {
   for (const double frequency : {0.05, 0.1, 0.2}) {
     const Outcome run =
         run_alone(model_named("bench_twin"), {FeedforwardKind::full_model, 0}, sine_reference(frequency));
@@ -87,7 +87,7 @@ TEST(FullModelFeedforward, TracksAFingerThatIsTheModel) {
   }
 }
 
-TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
+TEST(FullModelFeedforward, PreviewIncludesDeadTimeAndExtraLatency) {
   const model::Model twin = model_named("bench_twin");
   const Feedforward plain(twin, {FeedforwardKind::full_model, 0}, limits, tick_s);
   EXPECT_NEAR(plain.preview_s(), 0.130 + tick_s, 1e-12);
@@ -97,7 +97,7 @@ TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
   EXPECT_LT(known.worst_mm, 2e-3);
 }
 
-TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
+TEST(FullModelFeedforward, CompensatesTheSampleHoldOfAModelWithoutLag) {
   const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   // The board holds each command for one tick. This hold causes an error of at most half the largest change
   // of the reference per tick.
@@ -138,7 +138,7 @@ TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
 
 // Earlier commands have changed the valve openings, the integral of the regulator and the position in the
 // dead band. The feedforward must start with these values.
-TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
+TEST(FullModelFeedforward, StartsFromTheStatesOfRegulatorAndDeadBand) {
   const model::Model model = regulated_twin();
   RunningModel running(model, tick_s, 0, 0.1);
   model::Chain<double> finger(model, {}, tick_s);
@@ -166,7 +166,7 @@ TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
 }
 
 // The line loses pressure by a leak. The command must compensate for this pressure loss.
-TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
+TEST(FullModelFeedforward, TracksThroughALeakAndAPressureScale) {
   const model::Model twin = model_named("bench_twin");
   const Reference sine = sine_reference(0.1);
   for (const model::Model& model :
@@ -179,7 +179,7 @@ TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
   }
 }
 
-TEST(FullModelFeedforward, AReferenceBeyondTheRangeIsFollowedToItsEnd) {
+TEST(FullModelFeedforward, AReferenceBeyondTheRangeIsFollowedToTheLimit) {
   const model::Model twin = model_named("bench_twin");
   Reference reference;
   reference.start(0, 0);
@@ -198,7 +198,7 @@ TEST(FullModelFeedforward, AReferenceBeyondTheRangeIsFollowedToItsEnd) {
   EXPECT_NEAR(finger.reading_mm(), limits.displacement_max_mm, 2e-3);
 }
 
-TEST(FullModelFeedforward, AStopThatIsInTheModelIsPushedAgainst) {
+TEST(FullModelFeedforward, TracksBeyondAContactOfTheModel) {
   model::Model model =
       with_block(model_named("bench_twin"), model::default_block(*model::find_block("contact")));
   model = with_value(model, "contact.position_mm", 15);
@@ -212,7 +212,7 @@ TEST(FullModelFeedforward, AStopThatIsInTheModelIsPushedAgainst) {
   EXPECT_LT(run.worst_mm, 2e-3);
 }
 
-TEST(FullModelFeedforward, OutOfReachSaysSoAndResumesWithoutWindUp) {
+TEST(FullModelFeedforward, ReportsOutOfReachAndResumesWithoutWindUp) {
   const model::Model twin = model_named("bench_twin");
   Feedforward feedforward(twin, {FeedforwardKind::full_model, 0}, limits, tick_s);
   RunningModel running(twin, tick_s, 0, 0.1);
@@ -246,7 +246,7 @@ TEST(FullModelFeedforward, OutOfReachSaysSoAndResumesWithoutWindUp) {
   EXPECT_EQ(high, 0);
 }
 
-TEST(FullModelFeedforward, ASaturatingValveBoundsThePlan) {
+TEST(FullModelFeedforward, AValveSaturationIsReportedAsOutOfReach) {
   model::Model model =
       with_block(model_named("bench_twin"), model::default_block(*model::find_block("pressure_saturation")));
   model = with_value(model, "pressure_saturation.limit_kpa", 30);
@@ -259,7 +259,7 @@ TEST(FullModelFeedforward, ASaturatingValveBoundsThePlan) {
 }
 
 // A corner or a jump of the reference must not cause an oscillation of the planned command.
-TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
+TEST(FullModelFeedforward, AReferenceJumpCausesNoOscillation) {
   const model::Model twin = model_named("bench_twin");
   for (const double slew : {60.0, 120.0, 400.0}) {
     SCOPED_TRACE(slew);
@@ -331,7 +331,7 @@ struct Follower {
 // The reference jumps from 0 to 8 mm, and the finger must reach 8 mm within a time limit. A finger with an
 // elastic and a creeping element moves with the element that needs less pressure. A finger without creep
 // moves with its elastic element.
-TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
+TEST(FullModelFeedforward, FollowsAnEightMillimetreJumpWithinOneSecond) {
   const model::Model twin = model_named("bench_twin");
   struct Case {
     const char* name;
@@ -354,7 +354,7 @@ TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
 
 // If a disturbance displaces the finger during a motion, the command must not jump. The finger must continue
 // its motion and gradually return to the reference.
-TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
+TEST(FullModelFeedforward, ADisplacementOffsetInMotionCausesNoCommandJump) {
   Reference reference;
   reference.start(0, 0);
   (void)reference.hold_for(0.2);
@@ -372,7 +372,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   EXPECT_LT(worst, 0.5) << "change of the command between two ticks [kPa]";
 }
 
-TEST(BoucWenFeedforward, InvertsTheElementAlone) {
+TEST(BoucWenFeedforward, InvertsOnlyTheBoucWenBlock) {
   const model::Model twin = model_named("bench_twin");
   Feedforward feedforward(twin, {FeedforwardKind::bouc_wen, 0}, limits, tick_s);
   RunningModel running(twin, tick_s, 0, 0.1);

@@ -24,7 +24,7 @@ double rests_at_mm(const model::Model& model, double command_kpa, double seconds
   return chain.reading_mm();
 }
 
-TEST(FreeCurve, SaysWhichCommandADisplacementNeeds) {
+TEST(FreeCurve, ReturnsTheCommandThatADisplacementNeeds) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     SCOPED_TRACE(name);
     const model::Model model = model_named(name);
@@ -35,14 +35,14 @@ TEST(FreeCurve, SaysWhichCommandADisplacementNeeds) {
   }
 }
 
-TEST(FreeCurve, GoesOnBeyondItsEnds) {
+TEST(FreeCurve, ExtrapolatesBeyondBothEnds) {
   const FreeCurve curve(model_named("bench_twin"), limits);
   EXPECT_NEAR(curve.command_kpa(0), 0, 0.05);
   EXPECT_LT(curve.command_kpa(-1), -1);
   EXPECT_GT(curve.command_kpa(40), curve.command_kpa(35) + 1);
 }
 
-TEST(FreeCurve, TheSqueezeForADeficitIsEnoughEverywhere) {
+TEST(FreeCurve, TheGrippingPressureForAShortfallSufficesEverywhere) {
   const FreeCurve curve(model_named("bench_twin"), limits);
   const double needed_kpa = curve.squeeze_for_kpa(1);
   for (double y_mm = 0; y_mm < 30; y_mm += 0.5) {
@@ -67,7 +67,7 @@ TEST(FreeCurve, AModelThatDoesNotMoveNeedsTheLowestCommand) {
 
 // The displacement of this finger decreases with the pressure, so the highest point of the curve is the first
 // point.
-TEST(FreeCurve, AModelThatMovesBackwardsNeedsTheLowestCommandToo) {
+TEST(FreeCurve, AModelWithNegativeGainReturnsTheLowestCommand) {
   model::Model backwards = model::only(model_named("bench_twin"),
                                        [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });
   auto values = model::flat_values(backwards);
@@ -94,14 +94,14 @@ TEST(FreeCurve, WithoutAValveTheCommandIsThePressure) {
   }
 }
 
-TEST(FreeMotion, GoesWhereTheFreeCurveSays) {
+TEST(FreeMotion, HighestDisplacementAgreesWithTheFreeCurve) {
   const LimitSettings rig_limits = two_finger_settings().channels[0].limits;
   const FreeMotion motion = free_motion(twin(), rig_limits);
   EXPECT_GT(motion.highest_mm, motion.lowest_mm + 5);
   EXPECT_NEAR(FreeCurve(twin(), rig_limits).command_kpa(motion.highest_mm), rig_limits.pressure_max_kpa, 1.5);
 }
 
-TEST(FreeMotion, IsNoFasterThanItsSlewLimits) {
+TEST(FreeMotion, SlowerSlewLimitsReduceTheFastestMotion) {
   LimitSettings rig_limits = two_finger_settings().channels[0].limits;
   rig_limits.slew_up_kpa_per_s = rig_limits.slew_down_kpa_per_s = 1000;
   const FreeMotion fast = free_motion(twin(), rig_limits);
@@ -112,7 +112,7 @@ TEST(FreeMotion, IsNoFasterThanItsSlewLimits) {
   EXPECT_NEAR(fast.highest_mm, slow.highest_mm, 0.1 * slow.highest_mm);
 }
 
-TEST(FreeMotion, WithoutAValveThePressureIsTheCommandAtOnce) {
+TEST(FreeMotion, AModelWithoutAValveMovesFasterToTheSameEnd) {
   LimitSettings rig_limits = two_finger_settings().channels[0].limits;
   rig_limits.pressure_min_kpa = 6;
   rig_limits.slew_up_kpa_per_s = rig_limits.slew_down_kpa_per_s = 1000;

@@ -38,7 +38,7 @@ model::Model with_value(const model::Model& model, const std::string& path, doub
   return model::with_values(model, values);
 }
 
-TEST(Invertibility, ThePublishedModelIsRefusedForBothKinds) {
+TEST(Invertibility, ThePublishedModelIsRefusedForFullModelAndBoucWen) {
   const model::Model published = model_named("zhang2025");
   const auto full = check(published, FeedforwardKind::full_model);
   ASSERT_FALSE(full);
@@ -53,13 +53,13 @@ TEST(Invertibility, ThePublishedModelIsRefusedForBothKinds) {
   EXPECT_TRUE(check(published, FeedforwardKind::none));
 }
 
-TEST(Invertibility, TheTwinIsAcceptedForBothKinds) {
+TEST(Invertibility, BenchTwinIsAcceptedForFullModelAndBoucWen) {
   const model::Model twin = model_named("bench_twin");
   EXPECT_TRUE(check(twin, FeedforwardKind::full_model));
   EXPECT_TRUE(check(twin, FeedforwardKind::bouc_wen));
 }
 
-TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
+TEST(Invertibility, PlayOperatorsAreAcceptedForFullModelNotForBoucWen) {
   const model::Model arm = model_named("soft_arm_play");
   EXPECT_TRUE(check(arm, FeedforwardKind::full_model));
   const auto part = check(arm, FeedforwardKind::bouc_wen);
@@ -91,7 +91,7 @@ TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
 
 // The gain of this model is positive at 0 kPa, but hysteresis makes the gain negative at higher pressures. To
 // find the negative gain, the check must evaluate the whole pressure range.
-TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
+TEST(Invertibility, ANegativeGainInsideThePressureRangeIsRefused) {
   const model::Model twin = model_named("bench_twin");
   const model::Model hidden = with_value(twin, "bouc_wen.alpha_mm_per_kpa", 0.1800);
   const auto refused = check(hidden, FeedforwardKind::full_model);
@@ -107,7 +107,7 @@ TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
 
 // If a hysteresis loop has different slopes at its two ends, the inverse can be missing at one end and exist
 // at the other.
-TEST(Invertibility, AGainThatIsNegativeOneWayOnlyIsFoundAndTheWayIsNamed) {
+TEST(Invertibility, ARefusalNamesTheDirectionOfTheNegativeGain) {
   const auto skewed = [](double epsilon_per_kpa) {
     model::Model even = with_value(model_named("bench_twin"), "bouc_wen.eta_per_kpa", 0.02);
     even = with_value(even, "bouc_wen.gamma_per_kpa", 0.02);
@@ -123,7 +123,7 @@ TEST(Invertibility, AGainThatIsNegativeOneWayOnlyIsFoundAndTheWayIsNamed) {
   }
 }
 
-TEST(Invertibility, BetaEqualToTheGainIsRefusedToo) {
+TEST(Invertibility, BetaEqualToAlphaIsRefused) {
   const model::Model twin = model_named("bench_twin");
   const auto refused =
       check(with_value(twin, "bouc_wen.beta_mm_per_kpa", 0.21105), FeedforwardKind::bouc_wen);
@@ -131,7 +131,7 @@ TEST(Invertibility, BetaEqualToTheGainIsRefusedToo) {
   EXPECT_NE(refused.error().text.find("beta = alpha"), std::string::npos) << refused.error().text;
 }
 
-TEST(Invertibility, WhatIsMissingIsNamed) {
+TEST(Invertibility, ARefusalNamesTheMissingBlock) {
   const model::Model linear = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
   EXPECT_TRUE(check(linear, FeedforwardKind::full_model));
   const auto refused = check(linear, FeedforwardKind::bouc_wen);
@@ -145,7 +145,7 @@ TEST(Invertibility, WhatIsMissingIsNamed) {
 
 // Tests each block of the catalogue that is located between command and displacement. The feedforward must
 // either invert the block or refuse the model with a message that names the block.
-TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
+TEST(Invertibility, EveryBlockIsInvertedOrNamedInTheRefusal) {
   const model::Model twin = model_named("bench_twin");
   for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
     const model::BlockInfo& info = model::catalogue()[type].info;
@@ -166,7 +166,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
 }
 
 // Tests blocks whose type is not in the catalogue.
-TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
+TEST(Invertibility, NotUndoneNamesEveryBlockWithoutAnInverse) {
   using enum model::Inverse;
   const auto block = [](std::string_view id, model::Station station, model::Inverse inverse) {
     return model::BlockInfo{id, station, model::Kind::pressure, inverse, "", "", "", false};
@@ -195,7 +195,7 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
   }
 }
 
-TEST(Invertibility, WithoutCreepTheHysteresisAloneDecides) {
+TEST(Invertibility, WithoutCreepOnlyTheHysteresisIsChecked) {
   const model::Model elastic = model::without_block<model::KelvinVoigt>(model_named("bench_twin"));
   EXPECT_TRUE(check(elastic, FeedforwardKind::full_model));
   const auto refused =
@@ -204,7 +204,7 @@ TEST(Invertibility, WithoutCreepTheHysteresisAloneDecides) {
   EXPECT_EQ(refused.error().text.find("beta > alpha (0.1713 > 0.1 mm/kPa)"), 0U) << refused.error().text;
 }
 
-TEST(Invertibility, PlanningNeedsAFingerThatMovesWithThePressure) {
+TEST(Invertibility, PlanningRequiresAMovingFingerWithPositiveGain) {
   const model::Model twin = model_named("bench_twin");
   EXPECT_TRUE(check(twin, FeedforwardKind::planned));
   const model::Model valve_only =
@@ -222,7 +222,7 @@ TEST(Invertibility, PlanningNeedsAFingerThatMovesWithThePressure) {
 
 // A finger whose displacement decays under a constant command has a settled gain of about 0, with the sign of
 // a rounding error.
-TEST(Invertibility, AFingerThatDoesNotStayDeflectedIsRefusedWithoutAdviceOnTheSign) {
+TEST(Invertibility, ADecayingDeflectionIsRefusedWithoutSignAdvice) {
   const auto modes = [](double direct_mm_per_kpa) {
     return model::with_block(
         {}, {model::block_type<model::LinearModes>(), {direct_mm_per_kpa, 0.5, 0.4, -0.3, 0.1}});
@@ -242,7 +242,7 @@ TEST(Invertibility, AFingerThatDoesNotStayDeflectedIsRefusedWithoutAdviceOnTheSi
   EXPECT_NE(backwards.error().with_advice().find("turn the sign of the sensor"), std::string::npos);
 }
 
-TEST(Invertibility, AModelWithoutAnInverseIsRefusedWithTheFeedforwardsThatNeedNone) {
+TEST(Invertibility, ARefusalWithoutInverseAdvisesPlannedOrNone) {
   const auto refused = check(model::with_block({}, {model::block_type<model::LinearModes>(), {0.1}}),
                              FeedforwardKind::full_model);
   ASSERT_FALSE(refused);

@@ -17,11 +17,11 @@ bool is_accepted(const model::Model& model) {
   return check_feedforward(model, {FeedforwardKind::full_model, 0}, limits, sim::tick_s).has_value();
 }
 
-TEST(InvertiblePart, AModelWithAnInverseHasNoPart) {
+TEST(InvertiblePart, AnInvertibleModelHasNoSeparatePart) {
   EXPECT_FALSE(invertible_part(model_named("bench_twin"), limits, sim::tick_s));
 }
 
-TEST(InvertiblePart, TheBlockInTheWayIsLeftOutAndNothingElse) {
+TEST(InvertiblePart, OnlyTheBlockWithoutAnInverseIsLeftOut) {
   const model::Model twin = model_named("bench_twin");
   const model::Model whole =
       model::with_block(twin, model::block_of<model::RelaxingFriction>(
@@ -35,7 +35,7 @@ TEST(InvertiblePart, TheBlockInTheWayIsLeftOutAndNothingElse) {
 
 /// The published finger has creep with two branches and a hysteresis loop. The creep has an inverse; the
 /// hysteresis loop has none.
-TEST(InvertiblePart, OfThePublishedFingerItIsTheCreepAlone) {
+TEST(InvertiblePart, LeavesBoucWenOutOfThePublishedModel) {
   const model::Model published = model_named("zhang2025");
   const auto part = invertible_part(published, limits, sim::tick_s);
   ASSERT_TRUE(part);
@@ -43,14 +43,14 @@ TEST(InvertiblePart, OfThePublishedFingerItIsTheCreepAlone) {
   EXPECT_EQ(part->left_out, std::vector<std::string>{"bouc_wen"});
 }
 
-TEST(InvertiblePart, IsMissedOnBothSides) {
+TEST(InvertiblePart, LeavesBoucWenOutOnAVacuumChannel) {
   const LimitSettings vacuum{-60, 1, 400, 400, -25, 1, 1};
   const auto part = invertible_part(model_named("zhang2025"), vacuum, sim::tick_s);
   ASSERT_TRUE(part);
   EXPECT_EQ(part->left_out, std::vector<std::string>{"bouc_wen"});
 }
 
-TEST(InvertiblePart, WhatMovesNothingHasNone) {
+TEST(InvertiblePart, AValveAloneHasNoInvertiblePart) {
   const model::Model valve = model::only(model_named("bench_twin"), [](const model::BlockInfo& info) {
     return info.station == model::Station::valve;
   });

@@ -64,7 +64,7 @@ class PlannedFeedforwardTest : public testing::Test {
   FeedforwardQuery query_{&reference_, 0, 0};
 };
 
-TEST_F(PlannedFeedforwardTest, GoesFromThePressureThatIsThereOverToItsPlan) {
+TEST_F(PlannedFeedforwardTest, FadesFromTheCurrentPressureToThePlan) {
   reference_.start(0, 5);
   const PressurePlan plan = plan_of(20, 2, 5);
   query_.plan = &plan;
@@ -83,7 +83,7 @@ TEST_F(PlannedFeedforwardTest, GoesFromThePressureThatIsThereOverToItsPlan) {
   EXPECT_NEAR(difference, 0, 1e-9) << "the command equals the plan after " << fade_s << " s";
 }
 
-TEST_F(PlannedFeedforwardTest, WhatTheFingerShowsMoreThanItsModelIsTakenOffAtTheSettledGain) {
+TEST_F(PlannedFeedforwardTest, AnOffsetIsCorrectedAtTheSettledGain) {
   reference_.start(0, 5);
   const PressurePlan plan = plan_of(20, 0, 5);
   query_.plan = &plan;
@@ -92,7 +92,7 @@ TEST_F(PlannedFeedforwardTest, WhatTheFingerShowsMoreThanItsModelIsTakenOffAtThe
   EXPECT_NEAR(step_for(fade_s + 1).pressure_kpa, 20 - 0.6 / gain(), 1e-9);
 }
 
-TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
+TEST_F(PlannedFeedforwardTest, APlanMoreThan1MillimetreOffIsIgnored) {
   reference_.start(0, 5);
   for (const double aside_mm : {0.9, 1.1}) {
     const PressurePlan plan = plan_of(20, 0, 5 + aside_mm);
@@ -105,7 +105,7 @@ TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
 
 // The plan begins, ends, or is replaced by a plan with another time origin. In each case, the command must be
 // continuous.
-TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
+TEST_F(PlannedFeedforwardTest, AChangeOfThePlanCausesNoCommandStep) {
   reference_.start(0, 5);
   const PressurePlan low = plan_of(8, 0, 5), high = plan_of(30, 1, 5);
   enter(0);
@@ -127,7 +127,7 @@ TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
 
 // Near a jump of the reference, a rounding error of the time can have a large effect. The time of the plan
 // can be before the jump although the time of the sequence is after the jump, or vice versa.
-TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
+TEST_F(PlannedFeedforwardTest, ARoundingErrorOfTheTimeKeepsThePlan) {
   for (const double rounding_s : {-1e-9, 0.0, 1e-9}) {
     SCOPED_TRACE(rounding_s);
     query_ = {&reference_, 0, 0};
@@ -146,7 +146,7 @@ TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
   }
 }
 
-TEST_F(PlannedFeedforwardTest, SaysWhatIsOutOfReach) {
+TEST_F(PlannedFeedforwardTest, ReportsAReferenceThatIsOutOfReach) {
   reference_.start(0, 5);
   PressurePlan plan = plan_of(20, 0, 5);
   query_.plan = &plan;

@@ -8,7 +8,7 @@
 namespace softgrip::control::pressure_plan_test {
 namespace {
 
-TEST(PressurePlan, BeforeAndBehindItsEndsTheMissIsThatOfItsEnds) {
+TEST(PressurePlan, TheMissIsConstantOutsideThePlan) {
   PressurePlan plan;
   EXPECT_EQ(plan.miss_mm(1), 0) << "the plan is empty";
   plan.step_s = 1;
@@ -22,7 +22,7 @@ TEST(PressurePlan, BeforeAndBehindItsEndsTheMissIsThatOfItsEnds) {
   EXPECT_EQ(plan.miss_mm(9), 4);
 }
 
-TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
+TEST(SettledLine, PassesThroughTheEndsOfThePressureRange) {
   const model::Model twin = sim::model_named("bench_twin");
   LimitSettings limits{10, 60, 400, 400, 0, 25, 1};
   model::Chain<double> chain(without_dead_time(twin));
@@ -38,7 +38,7 @@ TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
 
 // The settled line describes the true position of the finger. It must therefore not depend on the dead time,
 // the sensor and the noise of the model.
-TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
+TEST(SettledLine, DoesNotDependOnDeadTimeSensorOrNoise) {
   const model::Model twin = sim::model_named("bench_twin");
   model::Model shown = twin;
   for (const char* name : {"sensor_lag", "sensor_nonlinearity", "sensor_noise", "valve_deadband"}) {

@@ -24,7 +24,7 @@ double wanted_kpa(double t) {
   return 25 - 15 * std::cos(1.3 * t) - 5 * std::cos(4.1 * t);
 }
 
-TEST(RegulatorInverse, BringsThePressureWhereItIsWantedThroughOverlapAndIntegral) {
+TEST(RegulatorInverse, ReachesTheRequestedPressureThroughTheRegulator) {
   model::RegulatedPressure<double> valve(usual);
   valve.reset(wanted_kpa(0));
   RegulatorInverse inverse(valve, tick_s);
@@ -42,7 +42,7 @@ TEST(RegulatorInverse, BringsThePressureWhereItIsWantedThroughOverlapAndIntegral
                                 "integral action of the regulator";
 }
 
-TEST(RegulatorInverse, GoesOnFromWhereTheRegulatorStands) {
+TEST(RegulatorInverse, StartsFromTheStateOfTheRegulator) {
   model::RegulatedPressure<double> valve(usual);
   for (int k = 0; k < 100; ++k) (void)held(valve, 0.3 * k);
   ASSERT_GT(std::abs(valve.integral_kpa()), 0.1);
@@ -52,7 +52,7 @@ TEST(RegulatorInverse, GoesOnFromWhereTheRegulatorStands) {
   EXPECT_NEAR(held(valve, inverse.command_for(next_kpa)), next_kpa, 1e-3);
 }
 
-TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
+TEST(RegulatorInverse, LimitsTheCommandToTheFullPortOpening) {
   model::RegulatedPressure<double> valve(usual);
   RegulatorInverse inverse(valve, tick_s);
   const double command_kpa = inverse.command_for(40);
@@ -65,7 +65,7 @@ TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
 
 // While the pressure is constant, the command must not jump between the two edges of the overlap, because
 // these jumps would be useless noise.
-TEST(RegulatorInverse, APressureThatStandsDoesNotHaveTheOverlapPassed) {
+TEST(RegulatorInverse, AConstantPressureCausesNoJumpAcrossTheOverlap) {
   const RegulatorInverse inverse(model::RegulatedPressure<double>(usual), tick_s);
   EXPECT_NEAR(inverse.command_for(1e-5) - inverse.command_for(-1e-5), 0, 0.05 * usual.overlap_kpa);
   EXPECT_EQ(direction_of(1, tick_s), 1);

@@ -44,7 +44,7 @@ void expect_same_as_the_chain(const model::Model& model, double (*command_kpa)(i
   }
 }
 
-TEST(RunningModel, IsTheChainWithoutItsDelayLine) {
+TEST(RunningModel, AgreesWithTheModelChain) {
   expect_same_as_the_chain(model_named("bench_twin"), smooth_kpa, 5e-4);
   expect_same_as_the_chain(model_named("bench_twin"), slewed_kpa, 1e-3);
   expect_same_as_the_chain(model_named("zhang2025"), slewed_kpa, 1e-9);
@@ -58,7 +58,7 @@ TEST(RunningModel, ADelayBetweenTicksIsInterpolated) {
   expect_same_as_the_chain(model::with_values(model, values), slewed_kpa, 2e-3);
 }
 
-TEST(RunningModel, ExtraLatencyIsDeadTime) {
+TEST(RunningModel, ExtraLatencyActsAsDeadTime) {
   const model::Model model = model_named("bench_twin");
   RunningModel late(model, tick_s, 0.010, 0.1);
   RunningModel plain(model, tick_s, 0, 0.1);

@@ -64,7 +64,7 @@ Course course_through(const model::Model& model) {
   return course;
 }
 
-TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
+TEST(ValveInverse, TheValveReachesTheRequestedPressure) {
   struct Case {
     const char* name;
     model::Model valve;
@@ -83,7 +83,7 @@ TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
 
 // If a lag is upstream of a dead band, the dead band has no exact inverse. The inverse must then ignore the
 // dead band.
-TEST(ValveInverse, ADeadBandBehindALagIsLeftAlone) {
+TEST(ValveInverse, ADeadBandAfterALagIsIgnored) {
   const double now_kpa = 10, next_kpa = 10.2;
   EXPECT_EQ(ValveInverse(valve_with({lag, band}), tick_s).command_for(now_kpa, next_kpa),
             ValveInverse(valve_with({lag}), tick_s).command_for(now_kpa, next_kpa));
@@ -91,7 +91,7 @@ TEST(ValveInverse, ADeadBandBehindALagIsLeftAlone) {
               ValveInverse(valve_with({lag}), tick_s).command_for(now_kpa, next_kpa) + 0.6, 1e-12);
 }
 
-TEST(ValveInverse, GoesOnFromWhereTheValveStands) {
+TEST(ValveInverse, StartsFromTheStateOfTheValve) {
   const model::Model model = valve_with({band, regulator});
   RunningModel running(model, tick_s, 0, 0.1);
   for (int k = 0; k < 400; ++k) running.advance(wanted_kpa(k * tick_s));
@@ -108,7 +108,7 @@ TEST(ValveInverse, GoesOnFromWhereTheValveStands) {
   }
 }
 
-TEST(ValveInverse, SaysTheTimeConstantOfTheDirection) {
+TEST(ValveInverse, ReturnsTheTimeConstantOfTheDirection) {
   const ValveInverse inverse(valve_with({two_way_lag}), tick_s);
   EXPECT_DOUBLE_EQ(inverse.time_constant_s(10, 11), 0.03);
   EXPECT_DOUBLE_EQ(inverse.time_constant_s(10, 9), 0.06);

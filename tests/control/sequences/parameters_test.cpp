@@ -27,7 +27,7 @@ std::optional<Sequence> read(const std::string& text, document::Problems& proble
   return read_sequence(document::parse("seq.yaml", text, problems), problems, arguments);
 }
 
-TEST(Parameters, StandWhereAStepTakesANumber) {
+TEST(Parameters, ParameterValuesReplaceNumbersInSteps) {
   document::Problems problems;
   const auto plain = read(std::string(declared) + steps, problems);
   ASSERT_TRUE(plain) << problems.format();
@@ -56,7 +56,7 @@ struct Wrong {
 };
 class WrongParameters : public testing::TestWithParam<Wrong> {};
 
-TEST_P(WrongParameters, AreRefusedWithTheirPlace) {
+TEST_P(WrongParameters, AreRefusedWithTheExpectedMessage) {
   document::Problems problems;
   EXPECT_FALSE(read(GetParam().text, problems, GetParam().arguments));
   EXPECT_NE(problems.format().find(GetParam().message), std::string::npos) << problems.format();
@@ -182,7 +182,7 @@ document::Problem wrong(const std::string& message) {
   return {"seq.yaml", {3, 1}, "steps: []", message, ""};
 }
 
-TEST(Blame, FallsOnTheParameterWhoseValueAloneIsEnough) {
+TEST(Blame, NamesTheParameterThatAloneCausesTheError) {
   const Judge judge = [](const std::vector<Parameter>& values) {
     document::Problems found;
     if (values[1].value > 7) found.add(wrong("the sequence is too long"));
@@ -198,7 +198,7 @@ TEST(Blame, FallsOnTheParameterWhoseValueAloneIsEnough) {
   EXPECT_EQ(problems.list()[0].message, "with `b_s` = 8, line 3 is wrong: the sequence is too long");
 }
 
-TEST(Blame, StaysAtTheStepWhereItTakesSeveral) {
+TEST(Blame, NamesTheStepIfSeveralParametersCauseTheError) {
   const Judge judge = [](const std::vector<Parameter>& values) {
     document::Problems found;
     if (values[0].value + values[1].value > 15) found.add(wrong("the sequence is too long"));
@@ -232,7 +232,7 @@ TEST(Blame, TriesBothEndsOfEachRange) {
             "with `b_s` = 10, the upper end of its range, line 3 is wrong: the sequence is too long");
 }
 
-TEST(Blame, WhatIsWrongAnywayIsNoParametersFault) {
+TEST(Blame, AnErrorForAllValuesIsNotBlamedOnAParameter) {
   const Judge judge = [](const std::vector<Parameter>&) {
     document::Problems found;
     found.add(wrong("wrong"));

@@ -66,7 +66,7 @@ TEST(Planner, FollowsAModelThatHasAnInverse) {
   EXPECT_LT(worst_mm(twin, plan, reference, 0.5), 0.05);
 }
 
-TEST(Planner, FollowsThePublishedModelWhichHasNone) {
+TEST(Planner, FollowsThePublishedModelWithoutAnInverse) {
   const model::Model published = model_named("zhang2025");
   const Reference reference = sine_reference(0.2, 2);
   const PressurePlan plan = Planner(published, limits, tick_s).plan(reference, 0, reference.end_s());
@@ -77,7 +77,7 @@ TEST(Planner, FollowsThePublishedModelWhichHasNone) {
 // The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm, the play operators make the
 // search end with errors of up to 1.8 mm. These errors do not occur if an elastic gain replaces the play
 // operators.
-TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
+TEST(Planner, FollowsAPlayOperatorModelWithSmallUnloading) {
   LimitSettings wide = limits;
   wide.pressure_max_kpa = 110;
   Reference reference;
@@ -93,7 +93,7 @@ TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
 
 // The planner plans one time window after the other. In this test, the windows begin at different phases of
 // the sine, and the command changes its direction within a window.
-TEST(Planner, DoesNotComeToRestAtACorner) {
+TEST(Planner, ConvergesAtCornersOfTheCommand) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     for (const double frequency : {0.05, 0.1, 0.13, 0.2}) {
       const Reference reference = sine_reference(frequency, 2);
@@ -108,7 +108,7 @@ TEST(Planner, DoesNotComeToRestAtACorner) {
 /// during a motion, so the steady-state command is a third of the required command. When the search started
 /// from the steady-state command, it did not converge at the corners that friction causes in the required
 /// command.
-TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
+TEST(Planner, ConvergesDespiteCreepThatTakesHours) {
   model::Model finger = model::with_block({}, {*model::find_block("asymmetric_valve_lag"), {0.0374, 0.0374}});
   finger = model::with_block(std::move(finger), {*model::find_block("prandtl_ishlinskii"),
                                                  {41, 0, 0, 0, 0, 0.171, 3.9, 0.016, 7.2, 0.01, 11.2, 0.021,
@@ -122,7 +122,7 @@ TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
   EXPECT_LT(plan.rmse_mm, 0.02);
 }
 
-TEST(Planner, StaysWithinPressureAndSlew) {
+TEST(Planner, StaysWithinPressureAndSlewLimits) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;
   narrow.slew_up_kpa_per_s = 20;
@@ -144,7 +144,7 @@ TEST(Planner, StaysWithinPressureAndSlew) {
 
 // During one part of the motion, the finger is too slow for the reference. The plan must begin to move before
 // this part, and it must be accurate after this part.
-TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
+TEST(Planner, StartsEarlyIfTheSlewLimitIsTooLowForAStep) {
   LimitSettings slow = limits;
   slow.slew_up_kpa_per_s = 30;
   const model::Model twin = model_named("bench_twin");
@@ -162,7 +162,7 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
 
 // The reference falls to 0 mm faster than the creep of the finger decays. No finger can follow this
 // reference, so the plan reaches the lower pressure limit.
-TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
+TEST(Planner, IsMoreAccurateThanTheSettledLineAtTheLowerLimit) {
   const model::Model twin = model_named("bench_twin");
   const Reference reference = sine_reference(0.5, 4, {15, 2, 8, 8});
   const PressurePlan plan = Planner(twin, limits, tick_s).plan(reference, 0, reference.end_s());
@@ -192,7 +192,7 @@ double bend_of(const std::vector<double>& pressure_kpa) {
 
 // Below its pressure threshold, the finger does not move, so all commands cause the same error. Among these
 // commands, the planner must choose a smooth one.
-TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
+TEST(Planner, ChoosesASmoothCommandIfTheFingerDoesNotMove) {
   const model::Model dead = model::with_block(
       model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));
   Reference reference;
@@ -206,7 +206,7 @@ TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
   EXPECT_LT(bend_of(plan.pressure_kpa), 0.9 * bend_of(at_once));
 }
 
-TEST(Planner, GoesOnFromThePlanBefore) {
+TEST(Planner, ContinuesThePreviousPlan) {
   const model::Model twin = model_named("bench_twin");
   const Reference reference = sine_reference(0.2, 2);
   Planner planner(twin, limits, tick_s);
@@ -227,7 +227,7 @@ double processor_time_s(const std::function<void()>& work) {
 // measures planning and simulations in the same run, so their ratio does not depend on the speed and the load
 // of the computer. The measured ratios are 350, 1,650 and 3,350. For the third model, planning takes 1 s per
 // 10 s of motion if a simulation step takes 29 ns.
-TEST(Planner, TakesLessThanFourThousandSimulationsOfTheMotion) {
+TEST(Planner, PlanningTakesLessTimeThan4000Simulations) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;
   narrow.slew_up_kpa_per_s = 20;
@@ -254,7 +254,7 @@ TEST(Planner, TakesLessThanFourThousandSimulationsOfTheMotion) {
   }
 }
 
-TEST(PressurePlan, HoldsItsEndsAndIsStraightBetweenItsPoints) {
+TEST(PressurePlan, InterpolatesLinearlyAndIsConstantOutside) {
   PressurePlan plan;
   EXPECT_EQ(plan.at(1), 0);
   plan.start_s = 2;

@@ -12,7 +12,7 @@
 namespace softgrip::control::prepare_sequence_test {
 namespace {
 
-TEST(Profile, IsLinearBetweenPointsAndJumpsWhereTwoShareATime) {
+TEST(Profile, IsLinearBetweenPointsAndJumpsAtEqualTimes) {
   Profile profile;
   profile.points = {{0, 0}, {1, 10}, {1, 20}, {3, 0}};
   EXPECT_EQ(value_at(profile, -1), 0);
@@ -23,7 +23,7 @@ TEST(Profile, IsLinearBetweenPointsAndJumpsWhereTwoShareATime) {
   EXPECT_EQ(duration_s(profile), 3);
 }
 
-TEST(Profile, OfNoPointsOrOneStandsStill) {
+TEST(Profile, AProfileWithFewerThan2PointsIsConstant) {
   Profile profile;
   EXPECT_EQ(duration_s(profile), 0);
   EXPECT_EQ(value_at(profile, 1), 0);
@@ -32,7 +32,7 @@ TEST(Profile, OfNoPointsOrOneStandsStill) {
   EXPECT_EQ(value_at(profile, 1), 7);
 }
 
-TEST(Profile, BeginsWithItsFirstPointWheneverThatIs) {
+TEST(Profile, ReturnsTheFirstValueBeforeTheFirstPoint) {
   Profile profile;
   profile.points = {{1, 3}, {2, 5}};
   EXPECT_EQ(value_at(profile, 0.5), 3);
@@ -49,7 +49,7 @@ TEST(Profile, RepeatsItsCycle) {
   EXPECT_EQ(value_at(profile, 6), 0);
 }
 
-TEST(Profile, OfASignalIsTheSignalScaled) {
+TEST(Profile, ASignalProfileReturnsTheScaledSignal) {
   Profile profile;
   profile.signal = model::SignalName::tp2;
   profile.scale = 0.5;
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
                "goes to -2 mm"}),
     name_of_misfit);
 
-TEST(Prepare, ChannelsAreThoseOfTheStepElseOfTheSequenceElseAll) {
+TEST(Prepare, StepChannelsDefaultToSequenceChannelsThenToAll) {
   const RigSettings settings = two_finger_settings();
   const PreparedSequence sequence = sequence_of(R"(
 name: x
@@ -184,7 +184,7 @@ std::optional<PreparedSequence> prepared(const std::string& steps, const RigSett
   return sequence ? prepare(*sequence, settings, problems, stop) : std::nullopt;
 }
 
-TEST(Prepare, WhatIsExactlyAllowedIsTaken) {
+TEST(Prepare, ValuesEqualToTheLimitsAreAccepted) {
   RigSettings settings = two_finger_settings();
   settings.rate_hz = 10;
   const char* const grip =
@@ -199,7 +199,7 @@ TEST(Prepare, WhatIsExactlyAllowedIsTaken) {
   }
 }
 
-TEST(Prepare, LessThanTwoPeriodsShowNothing) {
+TEST(Prepare, IntervalsBelowTwoPeriodsAreRefused) {
   RigSettings settings = two_finger_settings();
   settings.rate_hz = 10;
   const auto grip_and_hold = [](const char* window_s, const char* every_s) {
@@ -218,7 +218,7 @@ TEST(Prepare, LessThanTwoPeriodsShowNothing) {
       << hold.format();
 }
 
-TEST(Prepare, AFingerWithNothingToFollowADisplacementIsNotSentToOne) {
+TEST(Prepare, ADisplacementTargetRequiresFeedforwardOrGains) {
   const char* move = "  - move: {channels: [left], displacement_mm: 5, duration_s: 1}\n";
   RigSettings settings = two_finger_settings();
   settings.channels[0].feedforward.kind = FeedforwardKind::none;
@@ -234,7 +234,7 @@ TEST(Prepare, AFingerWithNothingToFollowADisplacementIsNotSentToOne) {
   EXPECT_TRUE(prepared(move, settings, none)) << none.format();
 }
 
-TEST(Prepare, AStoppedPlanningIsARefusalWithItsReason) {
+TEST(Prepare, StoppedPlanningIsRefusedWithTheReason) {
   RigSettings settings = two_finger_settings();
   settings.channels[0].feedforward.kind = FeedforwardKind::planned;
   std::stop_source stop;
@@ -246,7 +246,7 @@ TEST(Prepare, AStoppedPlanningIsARefusalWithItsReason) {
       << problems.format();
 }
 
-TEST(Prepare, ReleaseGoesForwardOnly) {
+TEST(Prepare, TheReleaseStepIsAlwaysALaterStep) {
   const RigSettings settings = two_finger_settings();
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   ASSERT_EQ(pick.steps.size(), 4U);
@@ -256,7 +256,7 @@ TEST(Prepare, ReleaseGoesForwardOnly) {
   EXPECT_EQ(pick.steps[3].release_step, 4U) << "no step follows the release step";
 }
 
-TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
+TEST(Prepare, AParameterErrorIsReportedAtTheParameter) {
   const RigSettings settings = two_finger_settings();  // the upper pressure limit of this rig is 60 kPa
   const std::string text =
       "name: x\nparameters:\n  level_kpa: {default: 20, range: [10, 70], about: how hard}\n"
@@ -285,7 +285,7 @@ TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
       << asked.format();
 }
 
-TEST(Prepare, TheKeyOfARigChangesWithWhatASequenceDependsOn) {
+TEST(Prepare, TheRigKeyChangesWithLimitsAndChannelNames) {
   const RigSettings one = two_finger_settings();
   RigSettings other = one;
   EXPECT_EQ(rig_key(one), rig_key(other));

@@ -36,7 +36,7 @@ TEST(SequenceFile, ExamplesLoadAndFitTheExampleRig) {
   }
 }
 
-TEST(SequenceFile, TouchAndSqueezeArrive) {
+TEST(SequenceFile, ContactAndGrippingPressureKeysAreRead) {
   document::Problems problems;
   const auto sequence = read(R"(
 name: gentle
@@ -72,7 +72,7 @@ steps:
   EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "an experiment must continue at a contact";
 }
 
-TEST(SequenceFile, EveryKeyArrives) {
+TEST(SequenceFile, EveryKeyOfASequenceIsRead) {
   document::Problems problems;
   const auto sequence = read(R"(
 name: all
@@ -149,7 +149,7 @@ struct Broken {
 
 class BrokenSequence : public testing::TestWithParam<Broken> {};
 
-TEST_P(BrokenSequence, IsRefusedWithPlaceAndReason) {
+TEST_P(BrokenSequence, IsRefusedWithLineAndReason) {
   document::Problems problems;
   EXPECT_FALSE(read(GetParam().text, problems));
   ASSERT_FALSE(problems.empty());
@@ -280,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"too_many_points", with_points(5000), 3, "more than 20000 values"}),
     [](const auto& broken) { return broken.param.what; });
 
-TEST(SequenceFile, ADocumentThatParsingRefusedIsNone) {
+TEST(SequenceFile, ADocumentWithParseErrorsGivesNoSequence) {
   for (const char* text : {"name: x\nsteps:\n  - pressure: {signal: tp1}\n  - hold: [",
                            "name: &a x\nsteps:\n  - pressure: {signal: tp1}\n",
                            "name: x\nsteps:\n  - pressure: {signal: tp1, scale: !!float 1}\n"}) {
@@ -290,13 +290,13 @@ TEST(SequenceFile, ADocumentThatParsingRefusedIsNone) {
   }
 }
 
-TEST(SequenceFile, ManyPointsAndAsManyStepsAsAllowedAreTaken) {
+TEST(SequenceFile, Accepts3900PointsAnd200Steps) {
   document::Problems problems;
   EXPECT_TRUE(read(with_points(3900), problems)) << problems.format();
   EXPECT_TRUE(read(with_steps(200), problems)) << problems.format();
 }
 
-TEST(SequenceFile, ASpeedIsNoDuration) {
+TEST(SequenceFile, ASpeedLeavesTheDurationAtZero) {
   document::Problems problems;
   const auto sequence = read(with_step("move: {displacement_mm: 5, speed_mm_per_s: 4}"), problems);
   ASSERT_TRUE(sequence) << problems.format();
@@ -304,14 +304,14 @@ TEST(SequenceFile, ASpeedIsNoDuration) {
   EXPECT_EQ(sequence->steps[0].target.duration_s, 0);
 }
 
-TEST(SequenceFile, AFileThatIsNotThereOrBrokenIsNone) {
+TEST(SequenceFile, AMissingOrBrokenFileGivesNoSequence) {
   document::Problems problems;
   EXPECT_FALSE(load_sequence(SOFTGRIP_SOURCE_DIR "/config/sequences/missing.yaml", problems));
   EXPECT_NE(problems.format().find("missing.yaml"), std::string::npos) << problems.format();
   EXPECT_FALSE(load_sequence(SOFTGRIP_SOURCE_DIR "/tests/config/broken/bracket_open.yaml", problems));
 }
 
-TEST(SequenceFile, TheExampleOfTheManualIsOne) {
+TEST(SequenceFile, TheExampleOfTheManualIsAValidSequence) {
   std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/sequence-file.md");
   const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const std::size_t begin = manual.find("```yaml\n");
@@ -323,7 +323,7 @@ TEST(SequenceFile, TheExampleOfTheManualIsOne) {
   EXPECT_TRUE(prepare(*sequence, two_finger_settings(), problems)) << problems.format();
 }
 
-TEST(SequenceFile, AllErrorsComeAtOnce) {
+TEST(SequenceFile, AllErrorsAreReportedTogether) {
   document::Problems problems;
   EXPECT_FALSE(
       read("nam: x\nsteps:\n  - grib: {}\n  - move: {displacement_mm: 1}\n  - hold: {}\n", problems));

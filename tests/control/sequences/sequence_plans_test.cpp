@@ -67,7 +67,7 @@ TEST(SequencePlans, TracksThePublishedModelThreeTimesBetterThanPidAlone) {
   EXPECT_GT(alone, 3 * planned);
 }
 
-TEST(SequencePlans, TracksTheTwinThreeTimesBetterThanPidAlone) {
+TEST(SequencePlans, TracksBenchTwinThreeTimesBetterThanPidAlone) {
   const double alone = tracking_rmse_mm(rig_with("bench_twin", FeedforwardKind::none, twin_gains),
                                         "bench_twin", "track_sine", 1);
   const double planned = tracking_rmse_mm(planned_rig("bench_twin"), "bench_twin", "track_sine", 1);
@@ -75,7 +75,7 @@ TEST(SequencePlans, TracksTheTwinThreeTimesBetterThanPidAlone) {
   EXPECT_GT(alone, 3 * planned);
 }
 
-TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
+TEST(SequencePlans, EveryDisplacementMoveHasAPlanWithinTheLimits) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
     const RigSettings settings = planned_rig(model);
@@ -102,7 +102,7 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
   }
 }
 
-TEST(SequencePlans, AreReadAheadByTheDeadTime) {
+TEST(SequencePlans, ArePreviewedByDeadTimeAndExtraLatency) {
   RigSettings settings = planned_rig("bench_twin");
   settings.channels[0].feedforward.extra_latency_s = 0.02;
   const PreparedSequence track = example_sequence("track_sine", settings);
@@ -114,7 +114,7 @@ TEST(SequencePlans, AreReadAheadByTheDeadTime) {
   EXPECT_NEAR(right->start_s - right->begin_s, dead_s + 0.5 / settings.rate_hz, 1e-9);
 }
 
-TEST(SequencePlans, GoOnFromWhatAPressureDidBefore) {
+TEST(SequencePlans, APlanStartsFromThePreviousPressureStep) {
   const RigSettings settings = planned_rig("bench_twin");
   const PreparedSequence sequence = sequence_of(R"(
 name: x
@@ -131,7 +131,7 @@ steps:
   EXPECT_LT(plan->worst_mm, 0.05);
 }
 
-TEST(SequencePlans, ASequenceThatIsTooLongIsRefusedWithWordsAndAtOnce) {
+TEST(SequencePlans, ATooLongSequenceIsRefusedWithinOneSecond) {
   const RigSettings settings = planned_rig("zhang2025");
   document::Problems problems;
   const auto sequence = read_sequence(
@@ -148,7 +148,7 @@ TEST(SequencePlans, ASequenceThatIsTooLongIsRefusedWithWordsAndAtOnce) {
       << problems.format();
 }
 
-TEST(SequencePlans, WhatIsOutOfReachIsAWarningAtItsStep) {
+TEST(SequencePlans, AnUnreachableTargetCausesAWarningAtTheStep) {
   RigSettings settings = planned_rig("zhang2025");
   settings.channels[0].limits.slew_up_kpa_per_s = 5;
   document::Problems problems;
@@ -162,7 +162,7 @@ TEST(SequencePlans, WhatIsOutOfReachIsAWarningAtItsStep) {
   EXPECT_NE(problems.warnings()[0].message.find("channel 'left' cannot follow"), std::string::npos);
 }
 
-TEST(SequencePlans, ARigWithAnotherModelOrSlewNeedsOthers) {
+TEST(SequencePlans, TheRigKeyChangesWithModelAndSlewLimit) {
   const RigSettings one = planned_rig("bench_twin");
   RigSettings other = planned_rig("zhang2025");
   EXPECT_NE(rig_key(one), rig_key(other));
@@ -193,7 +193,7 @@ PlanShape shape_of(const PreparedSequence& sequence, std::size_t channel) {
 
 // Two fingers with equal settings share one plan. If any setting of the fingers differs, each finger has its
 // own plan within its own limits.
-TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
+TEST(SequencePlans, EachPlanKeepsTheLimitsOfTheFinger) {
   const std::string moves =
       "name: x\nsteps:\n  - move: {displacement_mm: 12, duration_s: 1}\n"
       "  - move: {displacement_mm: 1, duration_s: 1}\n";
@@ -229,7 +229,7 @@ TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
               1e-9);
 }
 
-TEST(SequencePlans, AFingerThatIsLeftOutOfAStepHasNoPlanForIt) {
+TEST(SequencePlans, AFingerOutsideAStepHasNoPlanForTheStep) {
   const PreparedSequence parted = sequence_of(
       "name: x\nsteps:\n  - move: {displacement_mm: 6, duration_s: 1}\n"
       "  - move: {channels: [left], displacement_mm: 8, duration_s: 1}\n",
@@ -238,7 +238,7 @@ TEST(SequencePlans, AFingerThatIsLeftOutOfAStepHasNoPlanForIt) {
   EXPECT_EQ(parted.steps[1].plan_of(1), nullptr);
 }
 
-TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
+TEST(SequencePlans, OnlyFingersWithPlannedFeedforwardHavePlans) {
   RigSettings mixed = planned_rig("bench_twin");
   mixed.channels[0].feedforward.kind = FeedforwardKind::full_model;
   const PreparedSequence move =
@@ -250,7 +250,7 @@ TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
 
 // Grips a stone, then grips without a part, then grips the stone a second time. The grip without a part fails
 // and is retried. Before the retry, the finger moves back without a plan.
-TEST(SequencePlans, EveryGripHasItsAnswer) {
+TEST(SequencePlans, EveryGripReportsTheRightResult) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
     const RigSettings settings = planned_rig(model);
@@ -298,7 +298,7 @@ steps:
 
 // The sensor has a zero offset of 1.5 mm, but the plan assumes a sensor without offset. The feedforward must
 // shift the planned motion by 1.5 mm.
-TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
+TEST(SequencePlans, AFingerWithASensorOffsetReachesTheTarget) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
     const RigSettings settings = planned_rig(model);
@@ -349,7 +349,7 @@ TEST(SequencePlans, AStartFromAnotherDisplacementIsBumplessAndBetterThanPidAlone
   }
 }
 
-TEST(SequencePlans, BackingOffIsBumpless) {
+TEST(SequencePlans, TheMotionBeforeARetryIsBumpless) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
     const RigSettings settings = planned_rig(model);
@@ -366,7 +366,7 @@ TEST(SequencePlans, BackingOffIsBumpless) {
 }
 
 // If the prediction of a model is infinite or NaN in one tick, the command must still be a finite number.
-TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
+TEST(PlannedFeedforward, WithoutAPlanTheCommandFollowsTheSettledLine) {
   const model::Model twin = sim::model_named("bench_twin");
   const LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
   Feedforward feedforward(twin, {FeedforwardKind::planned, 0}, limits, sim::tick_s);

@@ -80,7 +80,7 @@ Reference ramp_and_sine(double from_s) {
   return reference;
 }
 
-TEST(ChannelController, TracksTheTwinWithinMicrometres) {
+TEST(ChannelController, TracksBenchTwinWithin5Micrometres) {
   Rig rig(twin_settings());
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
@@ -90,7 +90,7 @@ TEST(ChannelController, TracksTheTwinWithinMicrometres) {
   EXPECT_LT(std::abs(rig.last.residual_mm), 1e-3);
 }
 
-TEST(ChannelController, FeedbackMakesUpForAModelThatIsOff) {
+TEST(ChannelController, FeedbackHalvesTheErrorOfAnInaccurateModel) {
   ChannelSettings settings = twin_settings();
   const model::Model finger = settings.model;
   auto values = model::flat_values(settings.model);
@@ -152,7 +152,7 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   expect_smooth("after hold");
 }
 
-TEST(ChannelController, FeedbackThatWasHeldGoesOnWithoutAStep) {
+TEST(ChannelController, HeldFeedbackResumesWithoutAStep) {
   Rig rig(twin_settings());
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
@@ -181,7 +181,7 @@ TEST(ChannelController, VentGoesDownAtTheSlewLimit) {
   EXPECT_EQ(rig.last.command_kpa, 0);
 }
 
-TEST(ChannelController, NoCeilingStopsTheWayUpToRest) {
+TEST(ChannelController, APressureBoundDoesNotStopTheRiseToRest) {
   ChannelSettings settings = twin_settings();
   settings.limits.pressure_min_kpa = -40;
   Rig rig(settings);
@@ -204,7 +204,7 @@ TEST(ChannelController, NoCeilingStopsTheWayUpToRest) {
   }
 }
 
-TEST(ChannelController, ADisplacementWithoutAReferenceHolds) {
+TEST(ChannelController, DisplacementModeWithoutReferenceHoldsTheCommand) {
   Rig rig(twin_settings());
   rig.press(10);
   rig.run(0.5);
@@ -239,7 +239,7 @@ TEST(ChannelController, TheReferenceStaysInsideTheDisplacementRange) {
   EXPECT_TRUE(other.last.displacement_beyond);
 }
 
-TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
+TEST(ChannelController, AGapInTheReadingsHoldsFeedbackThenTrackingResumes) {
   Rig rig(twin_settings(), 0.02);
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
@@ -253,7 +253,7 @@ TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
   EXPECT_LT(std::abs(rig.error_mm()), 0.05);
 }
 
-TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
+TEST(ChannelController, ResynchronisingRemovesTheModelOffset) {
   // The controller restarts while the finger still creeps. The zero offset of the sensor has changed since
   // the stop.
   ChannelSettings settings = twin_settings();
@@ -283,7 +283,7 @@ TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
   EXPECT_NEAR(rig.error_mm(), 0, 0.1);
 }
 
-TEST(ChannelController, ModelHealthSeesAFingerThatChanged) {
+TEST(ChannelController, ModelHealthDetectsAChangedFingerInFreeMotion) {
   ChannelSettings settings = twin_settings();
   settings.health.model_error_mm = 0.05;
   model::Model weak = settings.model;
@@ -306,7 +306,7 @@ TEST(ChannelController, ModelHealthSeesAFingerThatChanged) {
       << "contact with an object is not an error of the model";
 }
 
-TEST(ChannelController, SlippedTicksAreCaughtUp) {
+TEST(ChannelController, TheModelCatchesUpAfterMissedCycles) {
   Rig rig(twin_settings());
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
@@ -322,7 +322,7 @@ TEST(ChannelController, SlippedTicksAreCaughtUp) {
   EXPECT_LT(std::abs(rig.error_mm()), 0.02);
 }
 
-TEST(ChannelController, AnUnusedDisplacementIsNeverActedOn) {
+TEST(ChannelController, AnUnusedDisplacementIsIgnored) {
   ChannelSettings settings = twin_settings();
   settings.displacement_used = false;
   settings.limits.displacement_max_mm = 1;
@@ -374,7 +374,7 @@ TEST(ChannelController, LimitsAreNeverExceededUnderRandomDemands) {
   }
 }
 
-TEST(ChannelController, ARefusedFeedforwardIsNone) {
+TEST(ChannelController, ARefusedFeedforwardHasNoPreview) {
   ChannelSettings settings = twin_settings();
   settings.model = sim::model_named("zhang2025");
   ChannelController controller(settings, tick_s);

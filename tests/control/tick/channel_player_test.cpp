@@ -59,7 +59,7 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
 // While the finger presses on a part, the integral of the feedback would increase the gripping pressure.
 // Therefore the integral is held in steps that grip or hold a part. In all other steps, the integral must
 // continue.
-TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
+TEST(ChannelPlayer, ContactHoldsFeedbackOnlyWhileGrippingOrHolding) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,
                               StepKind::track, StepKind::pressure}) {
@@ -90,7 +90,7 @@ ChannelOutput touching_under(double command_kpa, double free_kpa) {
   return seen;
 }
 
-TEST(ChannelPlayer, ATouchCountsFromRestUpward) {
+TEST(ChannelPlayer, ContactIsDetectedOnlyAboveTheRestPressure) {
   Step move = step_of(StepKind::move);
   move.target = {Target::Quantity::pressure_kpa, 30, false, 0, 2};
   move.on_contact = OnContact::hold;
@@ -105,7 +105,7 @@ TEST(ChannelPlayer, ATouchCountsFromRestUpward) {
   EXPECT_EQ(player.take_contact(), OnContact::hold);
 }
 
-TEST(ChannelPlayer, ASqueezeDoesNotEvacuate) {
+TEST(ChannelPlayer, GrippingPressureNeverFallsBelowRest) {
   Step grip = step_of(StepKind::grip);
   grip.target = {Target::Quantity::pressure_kpa, 40, false, 0, 2};
   grip.squeeze = {5, 10};

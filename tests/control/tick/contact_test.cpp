@@ -58,7 +58,7 @@ class ContactTest : public testing::Test {
   FreeCurve curve{twin(), settings.channels[0].limits};
 };
 
-TEST_F(ContactTest, AStoneIsHeldGentlyWhereverItIs) {
+TEST_F(ContactTest, AStoneAtAnyPositionIsHeldWithinThePressureLimit) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   const double allowed_kpa = pick.steps[1].step.bounds.squeeze_max_kpa;
   for (double at_mm = 2; at_mm <= 15; at_mm += 1) {
@@ -72,7 +72,7 @@ TEST_F(ContactTest, AStoneIsHeldGentlyWhereverItIs) {
   }
 }
 
-TEST_F(ContactTest, TheSqueezeThatIsAskedForIsWhatThePartGets) {
+TEST_F(ContactTest, TheRequestedGrippingPressureIsApplied) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   for (const double at_mm : {5.0, 12.0}) {
     SimulatedRig rig(settings);
@@ -85,7 +85,7 @@ TEST_F(ContactTest, TheSqueezeThatIsAskedForIsWhatThePartGets) {
   }
 }
 
-TEST_F(ContactTest, AMoveStaysWithItsFirstTouchUnlessToldOtherwise) {
+TEST_F(ContactTest, AMoveStopsAtContactByDefault) {
   const PreparedSequence move = steps("  - move: {displacement_mm: 14, speed_mm_per_s: 10, settle_s: 2}\n");
   SimulatedRig rig(settings);
   rig.stone(6);
@@ -98,7 +98,7 @@ TEST_F(ContactTest, AMoveStaysWithItsFirstTouchUnlessToldOtherwise) {
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
 }
 
-TEST_F(ContactTest, AMoveMayGoOnWithTheGripAtOnce) {
+TEST_F(ContactTest, ContactDuringAMoveCanStartTheGrip) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(4);
@@ -110,7 +110,7 @@ TEST_F(ContactTest, AMoveMayGoOnWithTheGripAtOnce) {
   ASSERT_TRUE(rig.run_until(State::idle, 60));
 }
 
-TEST_F(ContactTest, AMoveMayFail) {
+TEST_F(ContactTest, OnContactFailEndsAMoveWithError) {
   const PreparedSequence move =
       steps("  - move: {displacement_mm: 14, speed_mm_per_s: 10, on_contact: fail, on_fail: vent}\n");
   SimulatedRig rig(settings);
@@ -121,7 +121,7 @@ TEST_F(ContactTest, AMoveMayFail) {
   EXPECT_EQ(contacts(rig, OnContact::fail), 2U);
 }
 
-TEST_F(ContactTest, AMoveWithAToleranceFailsAtTheTouchAndNotAtItsTimeout) {
+TEST_F(ContactTest, AMoveWithAToleranceFailsAtContactBeforeTheTimeout) {
   const PreparedSequence move = steps(
       "  - move: {displacement_mm: 14, speed_mm_per_s: 10, tolerance_mm: 0.5, settle_s: 0.2, "
       "timeout_s: 30, on_fail: vent}\n");
@@ -132,7 +132,7 @@ TEST_F(ContactTest, AMoveWithAToleranceFailsAtTheTouchAndNotAtItsTimeout) {
   EXPECT_EQ(rig.result(0), GripResult::error);
 }
 
-TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
+TEST_F(ContactTest, OnContactIgnoreKeepsTheStepPressureLimit) {
   const PreparedSequence move = steps(
       "  - move: {displacement_mm: 16, speed_mm_per_s: 8, on_contact: ignore, pressure_max_kpa: 25, "
       "settle_s: 3}\n");
@@ -151,7 +151,7 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
 
 // If a limit of the rig file or of a step is active for some time, an event must report this limit. The table
 // has one row per limit.
-TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
+TEST_F(ContactTest, EveryLastingLimitCausesAnEvent) {
   const auto told = [](const SimulatedRig& rig) {
     std::set<std::string> names;
     for (const Event& event : rig.events) {
@@ -190,7 +190,7 @@ TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
   }
 }
 
-TEST_F(ContactTest, FreeMotionsMeetNothing) {
+TEST_F(ContactTest, FreeMotionsReportNoContactAndNoLimit) {
   const PreparedSequence moves = steps(
       "  - move: {displacement_mm: 20, speed_mm_per_s: 60, settle_s: 1}\n"
       "  - move: {displacement_mm: 4, speed_mm_per_s: 60, settle_s: 1}\n"
@@ -204,7 +204,7 @@ TEST_F(ContactTest, FreeMotionsMeetNothing) {
 
 // If the displacement reading freezes, it looks as if a part had stopped the finger. The test freezes the
 // reading at different times of a sequence. The grip result must never be HOLDING.
-TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
+TEST_F(ContactTest, AFrozenReadingIsNeverReportedAsHolding) {
   for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
     const PreparedSequence sequence = example_sequence(name, settings);
     for (double after_s = 0.2; after_s < 8; after_s += 0.6) {
@@ -226,7 +226,7 @@ TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
   }
 }
 
-TEST_F(ContactTest, WhatIsHeldMayBeMoved) {
+TEST_F(ContactTest, AHeldPartRemainsHeldDuringAMove) {
   const PreparedSequence carry = steps(
       "  - grip: {displacement_mm: 17, speed_mm_per_s: 4, squeeze_kpa: 5, squeeze_speed_kpa_per_s: 5, "
       "settle_s: 0.5, verify: {by: detection, window_s: 0.3}, timeout_s: 12, on_fail: vent}\n"
@@ -238,7 +238,7 @@ TEST_F(ContactTest, WhatIsHeldMayBeMoved) {
   EXPECT_NEAR(rig.board_kpa(0), 35, 1e-6) << "this pressure is the target of the step";
 }
 
-TEST_F(ContactTest, ASpringIsFollowedUntilItPressesBack) {
+TEST_F(ContactTest, AYieldingPartIsGrippedAtTheRequestedPressure) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings, 3);
   rig.yields = 0.5;
@@ -250,7 +250,7 @@ TEST_F(ContactTest, ASpringIsFollowedUntilItPressesBack) {
   EXPECT_NEAR(squeeze_kpa(rig), pick.steps[1].step.squeeze.by_kpa, 1.5);
 }
 
-TEST_F(ContactTest, WhatSlipsAwayIsSearchedForAndNotChased) {
+TEST_F(ContactTest, ALostPartIsNotFollowedBeyondTheTarget) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(9);
@@ -268,7 +268,7 @@ TEST_F(ContactTest, WhatSlipsAwayIsSearchedForAndNotChased) {
       << "the finger does not move beyond the target of the step";
 }
 
-TEST_F(ContactTest, TheBoundHoldsWhileAHeldPartCreeps) {
+TEST_F(ContactTest, GrippingPressureStaysBoundedDuringALongHold) {
   const PreparedSequence pick = steps(
       "  - grip: {displacement_mm: 17, speed_mm_per_s: 4, squeeze_kpa: 5, squeeze_speed_kpa_per_s: 5, "
       "settle_s: 0.5, verify: {by: detection, window_s: 0.3}, timeout_s: 12, on_fail: vent}\n"
@@ -280,7 +280,7 @@ TEST_F(ContactTest, TheBoundHoldsWhileAHeldPartCreeps) {
   EXPECT_LT(rig.output().channels[0].command_kpa - rig.output().channels[0].free_kpa, 5.5);
 }
 
-TEST_F(ContactTest, AHoldLastsUntilItsReleaseIsAskedFor) {
+TEST_F(ContactTest, AHoldLastsUntilTheReleaseRequest) {
   const PreparedSequence hand_over = example_sequence("hand_over", settings);
   SimulatedRig rig(settings);
   rig.stone(12);
@@ -300,7 +300,7 @@ TEST_F(ContactTest, AHoldLastsUntilItsReleaseIsAskedFor) {
   EXPECT_EQ(end->detail, Event::Detail(SequenceEnd::done));
 }
 
-TEST_F(ContactTest, AReleaseIsHeardInEveryStepAndNothingRisesAfterIt) {
+TEST_F(ContactTest, NoPressureRisesAfterAReleaseRequestInAnyStep) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   const PreparedSequence grip = steps(
       "  - grip: {pressure_kpa: 40, speed_kpa_per_s: 20, settle_s: 0.5, verify: {by: detection, window_s: "
@@ -328,7 +328,7 @@ TEST_F(ContactTest, AReleaseIsHeardInEveryStepAndNothingRisesAfterIt) {
   }
 }
 
-TEST_F(ContactTest, AReleaseWorksAfterASequenceAndIsRefusedWhereThereIsNothing) {
+TEST_F(ContactTest, AReleaseAfterASequenceVentsAndASecondIsRefused) {
   const PreparedSequence grip = steps(
       "  - grip: {pressure_kpa: 40, speed_kpa_per_s: 20, settle_s: 0.5, verify: {by: detection, window_s: "
       "0.3}, timeout_s: 6, on_fail: vent}\n");

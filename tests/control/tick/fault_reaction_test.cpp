@@ -209,7 +209,7 @@ class SingleFault : public testing::Test {
 };
 
 // A fault must be latched after exactly the number of faulty cycles that the rig file states.
-TEST_F(SingleFault, CyclesAreCountedOneByOne) {
+TEST_F(SingleFault, FaultsLatchAfterTheConfiguredNumberOfCycles) {
   const auto ticks_until_fault = [&](const auto& inject) {
     SimulatedRig rig(settings);
     EXPECT_TRUE(rig.run_until(State::idle, 1));
@@ -230,7 +230,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
 }
 
 // A single correct readback must reset the count of deviating readbacks to 0.
-TEST_F(SingleFault, AReadbackThatIsRightInBetweenIsNoFault) {
+TEST_F(SingleFault, ACorrectReadbackResetsTheMismatchCount) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   for (std::uint32_t i = 0; i < 10 * settings.faults.readback_cycles; ++i) {
@@ -249,7 +249,7 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::reading_frozen);
 }
 
-TEST_F(SingleFault, ABurstLineIsNoPart) {
+TEST_F(SingleFault, ABurstLineIsAFaultAndNotReportedAsHolding) {
   // The line bursts, and the displacement reading is constant, as if a part had stopped the finger. If the
   // controller did not check the pressure, the grip result would be HOLDING.
   SimulatedRig rig(settings);
@@ -265,7 +265,7 @@ TEST_F(SingleFault, ABurstLineIsNoPart) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed);
 }
 
-TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
+TEST_F(SingleFault, PressureFaultIsSuppressedForALimitedTimeAtStart) {
   SimulatedRig rig(settings);
   rig.fault[0].pressure_offset_kpa = 40;
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -276,7 +276,7 @@ TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
       << "after the start, the fault is suppressed only for a limited time of deflation";
 }
 
-TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
+TEST_F(SingleFault, IntermittentCommunicationDoesNotHideABurstLine) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.run(2);
@@ -295,7 +295,7 @@ TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
       << "a pressure that is no longer measured causes no fault";
 }
 
-TEST_F(SingleFault, APressureThatIsNotMeasuredIsNoFault) {
+TEST_F(SingleFault, AnUnmeasuredPressureCausesNoFault) {
   SimulatedRig rig(settings);
   rig.fault[0].no_pressure = true;
   rig.fault[1].no_pressure = true;
@@ -305,7 +305,7 @@ TEST_F(SingleFault, APressureThatIsNotMeasuredIsNoFault) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
 }
 
-TEST_F(SingleFault, ADisplacementThatDriftsBeyondTheLimits) {
+TEST_F(SingleFault, ADriftBeyondTheDisplacementLimitsIsAFault) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   while (rig.output().state != State::faulted && rig.fault[1].offset_mm < 60) {
@@ -317,7 +317,7 @@ TEST_F(SingleFault, ADisplacementThatDriftsBeyondTheLimits) {
   EXPECT_NEAR(rig.fault[1].offset_mm, limits.displacement_max_mm + limits.displacement_margin_mm, 1.5);
 }
 
-TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyWhereTheRigFileSaysSo) {
+TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyIfConfigured) {
   for (const bool is_fault : {true, false}) {
     settings.faults.model_unfit_is_fault = is_fault;
     SimulatedRig rig(settings);
@@ -333,7 +333,7 @@ TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyWhereTheRigFileSaysSo) {
   }
 }
 
-TEST_F(SingleFault, ACommandThatIsNoNumberNeverLeaves) {
+TEST_F(SingleFault, ANaNCommandIsNotSentAndLatchesAFault) {
   settings.channels[0].pid.kp_kpa_per_mm = std::numeric_limits<double>::quiet_NaN();
   SimulatedRig rig(settings);  // SimulatedRig checks that every command is finite and within its limits
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -343,7 +343,7 @@ TEST_F(SingleFault, ACommandThatIsNoNumberNeverLeaves) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::not_finite);
 }
 
-TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
+TEST_F(SingleFault, TheFirstFaultStaysLatchedAndLaterFaultsAreReported) {
   settings.safety.safe_action.fill(SafeAction::hold);
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
@@ -362,7 +362,7 @@ TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
       << "a second fault can change the reaction from hold to vent, but not from vent to hold";
 }
 
-TEST_F(SingleFault, AcknowledgingIsRefusedWhileTheCauseIsThere) {
+TEST_F(SingleFault, AnAcknowledgementIsRefusedWhileTheCauseRemains) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.emergency_stop = true;
@@ -392,7 +392,7 @@ TEST_F(SingleFault, AnAcknowledgementBeforeTheFaultDoesNotCount) {
   EXPECT_EQ(rig.output().state, State::faulted);
 }
 
-TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
+TEST_F(SingleFault, AReconnectionKeepsThePressureOfTheBoard) {
   for (const bool board_vents : {true, false}) {
     settings.safety.safe_action.fill(SafeAction::vent);
     settings.safety.safe_action[static_cast<std::size_t>(Phase::holding)] = SafeAction::hold;
@@ -416,7 +416,7 @@ TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
   }
 }
 
-TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
+TEST_F(SingleFault, ALaterFaultUsesTheSafeActionOfTheFirstPhase) {
   settings.safety.safe_action.fill(SafeAction::vent);
   settings.safety.safe_action[static_cast<std::size_t>(Phase::holding)] = SafeAction::hold;
   SimulatedRig rig(settings);
@@ -438,7 +438,7 @@ TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
   EXPECT_LT(rig.board_kpa(0), 1) << "the emergency stop has a separate safe action";
 }
 
-TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
+TEST_F(SingleFault, AFaultNamesTheFingerUntilTheAcknowledgement) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.fault[1].validity = model::Validity::sensor_error;
@@ -471,7 +471,7 @@ TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
 }
 
-TEST_F(SingleFault, PressureThatItHoldsIsSaidAndNotThatOfARunningHold) {
+TEST_F(SingleFault, HeldPressureIsReportedOnlyWithoutARunningSequence) {
   settings.safety.safe_action.fill(SafeAction::hold);
   SimulatedRig rig(settings);
   rig.stone(12);
@@ -487,7 +487,7 @@ TEST_F(SingleFault, PressureThatItHoldsIsSaidAndNotThatOfARunningHold) {
   EXPECT_EQ(rig.output().under_pressure, 0U);
 }
 
-TEST_F(SingleFault, SilenceAtPowerUpIsNoFault) {
+TEST_F(SingleFault, MissingCommunicationAtPowerUpIsNoFault) {
   SimulatedRig rig(settings);
   rig.wire_cut = true;
   rig.run(5);
@@ -496,7 +496,7 @@ TEST_F(SingleFault, SilenceAtPowerUpIsNoFault) {
   EXPECT_TRUE(rig.run_until(State::idle, 0.1));
 }
 
-TEST_F(SingleFault, ABriefDropoutIsBridged) {
+TEST_F(SingleFault, BriefReadingDropoutsCauseNoFault) {
   SimulatedRig rig(settings);
   rig.stone(12);
   const PreparedSequence pick = example_sequence("pick_stone", settings);

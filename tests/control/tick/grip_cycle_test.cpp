@@ -40,14 +40,14 @@ TEST_F(GripCycle, AStoneIsHeldAndReleased) {
   EXPECT_NEAR(rig.board_kpa(0), 0, 1e-9);
 }
 
-TEST_F(GripCycle, NothingThereIsNoPart) {
+TEST_F(GripCycle, AnEmptyGripReportsNoPart) {
   SimulatedRig rig(settings);
   play(rig, example_sequence("empty_grip", settings));
   EXPECT_EQ(rig.result(0), GripResult::no_part);
   EXPECT_EQ(rig.result(1), GripResult::no_part);
 }
 
-TEST_F(GripCycle, NoPartIsSaidByTheRecipeForTheStoneTooAfterItsRetry) {
+TEST_F(GripCycle, AMissingStoneReportsNoPartAfterOneRetry) {
   SimulatedRig rig(settings);
   play(rig, pick);
   EXPECT_EQ(rig.result(0), GripResult::no_part);
@@ -59,7 +59,7 @@ TEST_F(GripCycle, NoPartIsSaidByTheRecipeForTheStoneTooAfterItsRetry) {
   EXPECT_EQ(attempts, 2U);
 }
 
-TEST_F(GripCycle, AStoneThatComesBackForTheRetryIsHeld) {
+TEST_F(GripCycle, AStoneInsertedBeforeTheRetryIsHeld) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.start_until_step(pick, 1));
   const std::size_t before = rig.count(Event::Kind::step_started);
@@ -114,7 +114,7 @@ TEST_F(GripCycle, TheNextStartClearsPartLost) {
   EXPECT_EQ(rig.result(0), GripResult::released);
 }
 
-TEST_F(GripCycle, APressureGripIsDetectedByTheSameEvidence) {
+TEST_F(GripCycle, APressureGripReportsHoldingAndReleased) {
   const PreparedSequence screw = example_sequence("pick_screw", settings);
   SimulatedRig rig(settings);
   rig.stone(12);
@@ -133,7 +133,7 @@ TEST_F(GripCycle, AnObjectOutsideThePositionWindowIsNoPart) {
   EXPECT_EQ(rig.result(0), GripResult::no_part);
 }
 
-TEST_F(GripCycle, OneFingerMayHoldWhileTheOtherFindsNothing) {
+TEST_F(GripCycle, AGripOfOneFingerLeavesTheOtherFingerVented) {
   settings.channels[1].limits.displacement_max_mm = 36;
   const PreparedSequence grip = sequence_of(R"(
 name: x
@@ -149,7 +149,7 @@ steps:
   EXPECT_EQ(rig.board_kpa(1), 0);
 }
 
-TEST_F(GripCycle, WhatIsHeldAfterTheSequenceIsStillWatched) {
+TEST_F(GripCycle, AHeldPartIsMonitoredAfterTheSequence) {
   const PreparedSequence grip = sequence_of(R"(
 name: pick_for_a_robot
 steps:
@@ -168,7 +168,7 @@ steps:
   EXPECT_EQ(rig.output().state, State::idle);
 }
 
-TEST_F(GripCycle, APlaceSequenceStartsFromAHeldPart) {
+TEST_F(GripCycle, AReleaseSequenceStartsWithAHeldPart) {
   const PreparedSequence grip = sequence_of(R"(
 name: pick
 steps:
@@ -188,7 +188,7 @@ steps:
   EXPECT_EQ(rig.result(0), GripResult::released);
 }
 
-TEST_F(GripCycle, ABlindChannelVerifiesByPressureAndSaysThatItIsWeaker) {
+TEST_F(GripCycle, WithoutDisplacementFeedbackPressureVerifiesTheGrip) {
   for (ChannelSettings& channel : settings.channels) {
     channel.displacement_used = false;
   }
@@ -235,7 +235,7 @@ steps:
   }
 }
 
-TEST_F(GripCycle, AGripThatWasNeverLookedAtInTimeIsAnError) {
+TEST_F(GripCycle, AGripWithoutValidReadingsEndsWithError) {
   const PreparedSequence grip = sequence_of(R"(
 name: x
 steps:
@@ -255,7 +255,7 @@ steps:
       << "without a valid reading the result is neither HOLDING nor NO PART";
 }
 
-TEST_F(GripCycle, AFingerThatBacksOffSettlesBeforeItTriesAgain) {
+TEST_F(GripCycle, AFingerSettlesAtTheStartPressureBeforeARetry) {
   const PreparedSequence grip = sequence_of(R"(
 name: x
 steps:
@@ -279,7 +279,7 @@ steps:
       << "before the next attempt, the finger settles for settle_s at the start pressure";
 }
 
-TEST_F(GripCycle, AFingerThatCannotArriveEndsWithErrorAtTheTimeout) {
+TEST_F(GripCycle, AnUnreachableTargetEndsWithErrorAtTheTimeout) {
   const PreparedSequence move = sequence_of(R"(
 name: x
 steps:
@@ -294,7 +294,7 @@ steps:
   EXPECT_EQ(rig.board_kpa(0), 0);
 }
 
-TEST_F(GripCycle, AnObjectThatSticksIsNotReleased) {
+TEST_F(GripCycle, AStickingPartEndsTheReleaseWithError) {
   const PreparedSequence grip = sequence_of(R"(
 name: x
 steps:
@@ -312,7 +312,7 @@ steps:
   EXPECT_EQ(rig.result(1), GripResult::released);
 }
 
-TEST_F(GripCycle, ABlockedFingerIsNotPressedEverHarder) {
+TEST_F(GripCycle, ABlockedFingerKeepsTheGrippingPressure) {
   SimulatedRig rig(settings);
   rig.stone(12);
   ASSERT_TRUE(rig.start_until_step(pick, 2));
@@ -322,7 +322,7 @@ TEST_F(GripCycle, ABlockedFingerIsNotPressedEverHarder) {
   EXPECT_FALSE(rig.output().channels[0].saturated);
 }
 
-TEST_F(GripCycle, TheSineIsFollowedByFreeFingers) {
+TEST_F(GripCycle, FreeFingersTrackTheSineWithin100Micrometres) {
   const PreparedSequence track = example_sequence("track_sine", settings);
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.start_until_step(track, 1));
@@ -342,7 +342,7 @@ TEST_F(GripCycle, TheSineIsFollowedByFreeFingers) {
   ASSERT_TRUE(rig.run_until(State::idle, 20));
 }
 
-TEST_F(GripCycle, APressureProfileGoesOutAsItIsWritten) {
+TEST_F(GripCycle, TheCommandEqualsThePressureProfile) {
   const PreparedSequence profile = sequence_of(R"(
 name: x
 steps:

@@ -47,7 +47,7 @@ class HealthInFreeMotionTest : public testing::Test {
   RigSettings settings = two_finger_settings();
 };
 
-TEST_F(HealthInFreeMotionTest, APartThatAStopLeavesInTheFingersRaisesNoAlarm) {
+TEST_F(HealthInFreeMotionTest, APartHeldAfterAStopCausesNoHealthAlarm) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(8);
@@ -61,7 +61,7 @@ TEST_F(HealthInFreeMotionTest, APartThatAStopLeavesInTheFingersRaisesNoAlarm) {
   EXPECT_FALSE(unfit(rig));
 }
 
-TEST_F(HealthInFreeMotionTest, NorDoesOneThatAFaultLeavesThere) {
+TEST_F(HealthInFreeMotionTest, APartHeldAfterAFaultCausesNoHealthAlarm) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(8);
@@ -80,7 +80,7 @@ TEST_F(HealthInFreeMotionTest, NorDoesOneThatAFaultLeavesThere) {
   EXPECT_FALSE(unfit(rig));
 }
 
-TEST_F(HealthInFreeMotionTest, NorDoesOneThatAMoveRunsInto) {
+TEST_F(HealthInFreeMotionTest, ContactDuringAMoveCausesNoHealthAlarm) {
   SimulatedRig rig(settings);
   rig.stone(6);
   const PreparedSequence sequence = moves();
@@ -90,7 +90,7 @@ TEST_F(HealthInFreeMotionTest, NorDoesOneThatAMoveRunsInto) {
   EXPECT_FALSE(unfit(rig));
 }
 
-TEST_F(HealthInFreeMotionTest, AFingerThatHasBecomeStifferStillDoes) {
+TEST_F(HealthInFreeMotionTest, AStifferFingerCausesAHealthAlarm) {
   SimulatedRig rig(settings, 1, stiffer(1.3));
   const PreparedSequence sequence = moves();
   start(rig, sequence);
@@ -98,7 +98,7 @@ TEST_F(HealthInFreeMotionTest, AFingerThatHasBecomeStifferStillDoes) {
   EXPECT_TRUE(unfit(rig));
 }
 
-TEST_F(HealthInFreeMotionTest, AndOneThatHasBecomeSofter) {
+TEST_F(HealthInFreeMotionTest, ASofterFingerCausesAHealthAlarm) {
   SimulatedRig rig(settings, 1, stiffer(0.75));
   const PreparedSequence sequence = moves();
   start(rig, sequence);

@@ -23,7 +23,7 @@ class Outputs : public testing::Test {
   PreparedSequence pick = example_sequence("pick_stone", settings);
 };
 
-TEST_F(Outputs, ACommandThatNeverReachedTheBoardIsForgottenWithItsSequence) {
+TEST_F(Outputs, AStopContinuesFromTheOutputsOfTheBoard) {
   SimulatedRig rig(settings);
   close_on_stone(rig);
   const double last_kpa = command(rig);
@@ -40,7 +40,7 @@ TEST_F(Outputs, ACommandThatNeverReachedTheBoardIsForgottenWithItsSequence) {
   EXPECT_DOUBLE_EQ(rig.output().channels[1].command_kpa, 0.5);
 }
 
-TEST_F(Outputs, WhileASequenceRunsItIsTheSequenceThatCommands) {
+TEST_F(Outputs, ARunningSequenceIgnoresOlderBoardOutputs) {
   SimulatedRig rig(settings);
   close_on_stone(rig);
   const double last_kpa = command(rig);
@@ -50,7 +50,7 @@ TEST_F(Outputs, WhileASequenceRunsItIsTheSequenceThatCommands) {
   EXPECT_GT(command(rig), last_kpa - 1);
 }
 
-TEST_F(Outputs, WhatTheBusHasTakenBackIsGoneAtOnceAndStaysSo) {
+TEST_F(Outputs, ABusFaultWithVentedOutputsKeepsTheCommandAtZero) {
   for (const FaultCode said : {FaultCode::board_watchdog_tripped, FaultCode::outputs_overwritten,
                                FaultCode::write_refused, FaultCode::cycles_lost}) {
     SimulatedRig rig(settings);
@@ -70,7 +70,7 @@ TEST_F(Outputs, WhatTheBusHasTakenBackIsGoneAtOnceAndStaysSo) {
   }
 }
 
-TEST_F(Outputs, AnotherMasterIsNotFoughtWithWhatWasHeld) {
+TEST_F(Outputs, OverwrittenOutputsAreVentedDespiteSafeActionHold) {
   SimulatedRig rig(settings);
   close_on_stone(rig);
   rig.bus_fault = FaultCode::outputs_overwritten;
@@ -79,7 +79,7 @@ TEST_F(Outputs, AnotherMasterIsNotFoughtWithWhatWasHeld) {
   EXPECT_EQ(command(rig), settings.channels[0].limits.pressure_min_kpa);
 }
 
-TEST_F(Outputs, HoldingIsNotConcludedFromWhatWasSeenBeforeAGap) {
+TEST_F(Outputs, HoldingIsNotReportedRightAfterAPause) {
   int tried = 0;
   for (double into_step_s = 0.2; into_step_s < 4; into_step_s += 0.1) {
     SimulatedRig rig(settings);
@@ -93,7 +93,7 @@ TEST_F(Outputs, HoldingIsNotConcludedFromWhatWasSeenBeforeAGap) {
   EXPECT_GE(tried, 10);
 }
 
-TEST_F(Outputs, AVentIsOverWhenEveryFingerIsDown) {
+TEST_F(Outputs, AVentEndsWhenTheSlowestFingerIsVented) {
   for (const std::size_t slow : {0U, 1U}) {
     RigSettings one_is_slow = settings;
     one_is_slow.channels[slow].limits.slew_down_kpa_per_s /= 10;
@@ -108,7 +108,7 @@ TEST_F(Outputs, AVentIsOverWhenEveryFingerIsDown) {
   }
 }
 
-TEST_F(Outputs, AReadingThatGoesAndComesIsTold) {
+TEST_F(Outputs, InvalidAndValidReadingsAreReportedAsEvents) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.events.clear();
@@ -123,7 +123,7 @@ TEST_F(Outputs, AReadingThatGoesAndComesIsTold) {
   EXPECT_EQ(rig.count(Event::Kind::reading_valid), 1U);
 }
 
-TEST_F(Outputs, AFaultThatIsBackAfterItWasAcknowledgedIsToldAgain) {
+TEST_F(Outputs, ARepeatedFaultIsReportedAfterTheAcknowledgement) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   for (int round = 0; round < 2; ++round) {
@@ -141,7 +141,7 @@ TEST_F(Outputs, AFaultThatIsBackAfterItWasAcknowledgedIsToldAgain) {
   }
 }
 
-TEST_F(Outputs, AStartThatAVentHasOvertakenIsRefused) {
+TEST_F(Outputs, AStartOlderThanAVentOrStopIsRefused) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   for (const Request::Kind kind : {Request::Kind::vent, Request::Kind::stop}) {

@@ -28,7 +28,7 @@ class Requests : public testing::Test {
   PreparedSequence pick = example_sequence("pick_stone", settings);
 };
 
-TEST_F(Requests, ACheckIsAnsweredAsAStartAndMovesNothing) {
+TEST_F(Requests, ACheckAnswersLikeAStartWithoutMotion) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::check, &pick);
@@ -85,7 +85,7 @@ TEST_F(Requests, StartIsRefusedWithItsReason) {
               rig.output().state == State::resynchronising);
 }
 
-TEST_F(Requests, StopAndAcknowledgeNeedSomethingToActOn) {
+TEST_F(Requests, StopAndAcknowledgeAreRefusedWithoutATarget) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::stop);
@@ -98,7 +98,7 @@ TEST_F(Requests, StopAndAcknowledgeNeedSomethingToActOn) {
   expect_refused(rig, RefusalCode::faulted);
 }
 
-TEST_F(Requests, StopActsAsThePhaseSays) {
+TEST_F(Requests, StopAppliesTheSafeActionOfThePhase) {
   struct Case {
     int step;
     Phase phase;
@@ -135,7 +135,7 @@ TEST_F(Requests, StopActsAsThePhaseSays) {
   }
 }
 
-TEST_F(Requests, AStopWhileLookingForRestEndsTheStart) {
+TEST_F(Requests, AStopDuringResynchronisationCancelsTheStart) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::start, &pick);
@@ -147,7 +147,7 @@ TEST_F(Requests, AStopWhileLookingForRestEndsTheStart) {
   EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
 }
 
-TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
+TEST_F(Requests, ANamedStopEndsOnlyTheNamedStart) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request({Request::Kind::start, 7, &pick});
@@ -170,7 +170,7 @@ TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
   EXPECT_EQ(rig.count(Event::Kind::request_refused), 2U) << "the sequence has already ended";
 }
 
-TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
+TEST_F(Requests, ANamedStopRefusesAStartThatArrivesLater) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   const auto refused = [&](std::uint32_t id) {
@@ -192,7 +192,7 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
   EXPECT_FALSE(refused(8));
 }
 
-TEST_F(Requests, StopsOfStartsThatCannotWaitForgetNoneThatDoes) {
+TEST_F(Requests, StopsOfOldStartsDoNotDisplaceAPendingStop) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request({Request::Kind::check, 500, &pick});
@@ -208,7 +208,7 @@ TEST_F(Requests, StopsOfStartsThatCannotWaitForgetNoneThatDoes) {
   EXPECT_EQ(rig.output().state, State::idle);
 }
 
-TEST_F(Requests, VentWorksFromEverywhere) {
+TEST_F(Requests, VentWorksAtStartWhileHoldingAndWhileFaulted) {
   SimulatedRig rig(settings);
   rig.request(Request::Kind::vent);
   rig.tick();
@@ -235,7 +235,7 @@ TEST_F(Requests, VentWorksFromEverywhere) {
   }
 }
 
-TEST_F(Requests, AnOpenedInterlockStopsOnlySequencesThatSaySo) {
+TEST_F(Requests, AnOpenInterlockStopsOnlySequencesWithAlways) {
   const PreparedSequence screw = example_sequence("pick_screw", settings);
   for (const bool always : {false, true}) {
     const PreparedSequence& sequence = always ? screw : pick;
@@ -250,7 +250,7 @@ TEST_F(Requests, AnOpenedInterlockStopsOnlySequencesThatSaySo) {
   }
 }
 
-TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
+TEST_F(Requests, AStartFailsIfAFingerDoesNotComeToRest) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::start, &pick);
@@ -269,7 +269,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   EXPECT_EQ(why->detail, Event::Detail(UnsettledReason::moves));
 }
 
-TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
+TEST_F(Requests, AStartWaitsUntilAnInflatedFingerIsAtRest) {
   const PreparedSequence press =
       sequence_of("name: x\nsteps:\n  - move: {pressure_kpa: 40, duration_s: 1}\n", settings);
   SimulatedRig rig(settings);
@@ -287,7 +287,7 @@ TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
   EXPECT_TRUE(rig.run_until(State::running, 1)) << "the disturbance of the finger has ended";
 }
 
-TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
+TEST_F(Requests, AGripIsNotStartedIfTheFingerIsOffTheModel) {
   SimulatedRig rig(settings);
   rig.fault[0].offset_mm = 1.5 * settings.detection.margin_mm;
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -306,7 +306,7 @@ TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
       << "a sequence with only track steps starts even if the finger deviates from its model";
 }
 
-TEST_F(Requests, LeavingTheLoopIsSafeInEveryPhase) {
+TEST_F(Requests, SafePressuresFollowThePhaseOfTheSequence) {
   settings.safety.safe_action = {SafeAction::vent, SafeAction::vent, SafeAction::hold, SafeAction::vent};
   SimulatedRig rig(settings);
   rig.stone(12);

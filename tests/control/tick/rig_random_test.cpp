@@ -117,7 +117,7 @@ class Chaos {
   std::vector<PreparedSequence> sequences_;
 };
 
-TEST(RandomRig, KeepsItsPromises) {
+TEST(RandomRig, InvariantsHoldForRandomRequestsAndFaults) {
   std::vector<std::uint64_t> seeds;
   if (const char* given = std::getenv("SOFTGRIP_SEED")) {
     seeds.push_back(std::stoull(given));

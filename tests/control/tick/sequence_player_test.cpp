@@ -46,7 +46,7 @@ class SequencePlayback : public testing::Test {
   RigSettings settings = two_finger_settings();
 };
 
-TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
+TEST_F(SequencePlayback, EachOnFailActionSetsPressureStepsAndResults) {
   struct Case {
     const char* on_fail;
     SafeAction closing;  ///< safe action that the rig file states for the phase closing
@@ -96,7 +96,7 @@ TEST_F(SequencePlayback, ReleaseWithoutAReleaseStepVents) {
   EXPECT_EQ(rig.result(0), GripResult::no_part);
 }
 
-TEST_F(SequencePlayback, FingersOfOneStepAnswerEachForItself) {
+TEST_F(SequencePlayback, EachFingerOfAStepHasASeparateResult) {
   const std::string grip =
       "  - grip: {pressure_kpa: 45, speed_kpa_per_s: 60, settle_s: 0.4, verify: {by: detection, window_s: "
       "0.2}, "
@@ -114,7 +114,7 @@ TEST_F(SequencePlayback, FingersOfOneStepAnswerEachForItself) {
   EXPECT_EQ(end_of(rig), SequenceEnd::failed);
 }
 
-TEST_F(SequencePlayback, AStepBeginsWhenTheSlowestFingerIsThere) {
+TEST_F(SequencePlayback, AStepStartsWhenTheSlowestFingerHasArrived) {
   // The right finger starts from 20 kPa. Both fingers move at the same speed, so the right finger arrives
   // before the left one.
   const PreparedSequence sequence = steps(move_on +
@@ -126,7 +126,7 @@ TEST_F(SequencePlayback, AStepBeginsWhenTheSlowestFingerIsThere) {
   EXPECT_NEAR(rig.output().channels[1].command_kpa, 40, 0.2);
 }
 
-TEST_F(SequencePlayback, ManyShortStepsLoseNothing) {
+TEST_F(SequencePlayback, EachOf100ShortStepsReachesTheTarget) {
   std::string text = "  - move: {displacement_mm: 5, duration_s: 1}\n";
   for (int i = 1; i < 100; ++i) {
     text += "  - move: {displacement_mm: " + std::to_string(5 + i % 2) + ", duration_s: 0.02}\n";
@@ -148,7 +148,7 @@ TEST_F(SequencePlayback, ManyShortStepsLoseNothing) {
   EXPECT_EQ(step, 99);
 }
 
-TEST_F(SequencePlayback, TheReferenceHasNoStepsWhereStepsMeet) {
+TEST_F(SequencePlayback, TheReferenceIsContinuousBetweenSteps) {
   const PreparedSequence sequence = steps(
       "  - move: {displacement_mm: 8, speed_mm_per_s: 15}\n"
       "  - move: {displacement_mm: 14, speed_mm_per_s: 15}\n"
@@ -167,7 +167,7 @@ TEST_F(SequencePlayback, TheReferenceHasNoStepsWhereStepsMeet) {
   }
 }
 
-TEST_F(SequencePlayback, TheEvidenceComesWithTheAnswer) {
+TEST_F(SequencePlayback, GripResultEventsContainTheEvidence) {
   const PreparedSequence sequence = steps(grip_left + "release}\n" + let_go);
   SimulatedRig rig(settings);
   rig.stone(12);

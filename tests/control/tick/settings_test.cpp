@@ -11,11 +11,11 @@
 namespace softgrip::control::settings_test {
 namespace {
 
-TEST(Settings, TheFixtureIsSound) {
+TEST(Settings, TheFixtureSettingsAreValid) {
   EXPECT_TRUE(settings_problems(two_finger_settings()).empty());
 }
 
-TEST(Settings, EachThatControlCannotTakeIsNamed) {
+TEST(Settings, EachInvalidSettingIsNamedInTheProblem) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   struct Case {
@@ -84,7 +84,7 @@ TEST(Settings, EachThatControlCannotTakeIsNamed) {
   }
 }
 
-TEST(Settings, AChannelNeedsItsDisplacementOrItsPressure) {
+TEST(Settings, AChannelWithDisplacementOrPressureIsValid) {
   RigSettings settings = two_finger_settings();
   settings.channels[0].displacement_used = false;
   settings.channels[0].pressure_measured = true;
@@ -94,7 +94,7 @@ TEST(Settings, AChannelNeedsItsDisplacementOrItsPressure) {
   EXPECT_TRUE(settings_problems(settings).empty());
 }
 
-TEST(Settings, AnUnknownRmseOfTheModelIsNoReproach) {
+TEST(Settings, AnUnknownModelRmseIsAccepted) {
   RigSettings settings = two_finger_settings();
   settings.detection.model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(settings_problems(settings).empty());

@@ -158,7 +158,7 @@ class SupervisorSearch : public testing::Test {
   PreparedSequence sequence_ = example_sequence("pick_stone", settings_);
 };
 
-TEST_F(SupervisorSearch, NoStateThatCanBeReachedBreaksAPromise) {
+TEST_F(SupervisorSearch, NoReachableStateViolatesARule) {
   const std::vector<Tick> ticks = all_ticks();
   std::set<std::string> seen;
   std::deque<Supervisor> open{Supervisor(settings_)};

@@ -24,7 +24,7 @@ class UnsteadyTest : public testing::Test {
   RigSettings settings = two_finger_settings();
 };
 
-TEST_F(UnsteadyTest, IsToldOnceAndSoIsItsEnd) {
+TEST_F(UnsteadyTest, IsReportedOnceAndClearedOnce) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   jump(rig, 3);
@@ -38,7 +38,7 @@ TEST_F(UnsteadyTest, IsToldOnceAndSoIsItsEnd) {
   EXPECT_EQ(rig.count(Event::Kind::reading_steady), 1U);
 }
 
-TEST_F(UnsteadyTest, IsAFaultWhereTheSettingsSaySo) {
+TEST_F(UnsteadyTest, IsAFaultIfConfiguredAsAFault) {
   settings.faults.unsteady_is_fault = true;
   SimulatedRig rig(settings);
   const PreparedSequence track = example_sequence("track_sine", settings);
@@ -63,7 +63,7 @@ TEST_F(UnsteadyTest, IsAFaultWhereTheSettingsSaySo) {
   EXPECT_TRUE(rig.answer(Event::Kind::fault_acknowledged).has_value());
 }
 
-TEST_F(UnsteadyTest, PartsThatSlipAndComeBackAreNone) {
+TEST_F(UnsteadyTest, SlippingPartsAreNotUnsteadyReadings) {
   settings.faults.unsteady_is_fault = true;
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
@@ -79,7 +79,7 @@ TEST_F(UnsteadyTest, PartsThatSlipAndComeBackAreNone) {
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
 }
 
-TEST_F(UnsteadyTest, ASensorThatIsNotUsedDoesNotCount) {
+TEST_F(UnsteadyTest, AnUnusedSensorIsNotReported) {
   settings.faults.unsteady_is_fault = true;
   settings.channels[0].displacement_used = false;
   settings.channels[0].pressure_measured = true;

@@ -45,7 +45,7 @@ TEST_F(VacuumRig, StartsAndIdlesAtRest) {
   EXPECT_EQ(rig.output().under_pressure, 0U);
 }
 
-TEST_F(VacuumRig, AVacuumIsGrippedHeldAndReleasedToRest) {
+TEST_F(VacuumRig, AVacuumGripHoldsAndReleasesToRestPressure) {
   SimulatedRig rig(settings);
   hold_vacuum(rig);
   EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::pressure);
@@ -56,7 +56,7 @@ TEST_F(VacuumRig, AVacuumIsGrippedHeldAndReleasedToRest) {
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
 }
 
-TEST_F(VacuumRig, AVentAndAReleaseComeUpToRestWithinTheSlew) {
+TEST_F(VacuumRig, VentAndReleaseReturnToRestWithinTheSlewLimit) {
   for (const Request::Kind kind : {Request::Kind::vent, Request::Kind::release}) {
     SimulatedRig rig(settings);  // SimulatedRig checks the slew limits in each tick
     hold_vacuum(rig);
@@ -67,7 +67,7 @@ TEST_F(VacuumRig, AVentAndAReleaseComeUpToRestWithinTheSlew) {
   }
 }
 
-TEST_F(VacuumRig, AVacuumThatStaysIsSaid) {
+TEST_F(VacuumRig, AVacuumHeldAfterAStopIsReported) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence held = vacuum_grip(settings);
   SimulatedRig rig(settings);
@@ -83,7 +83,7 @@ TEST_F(VacuumRig, AVacuumThatStaysIsSaid) {
   EXPECT_EQ(command(rig), 0);
 }
 
-TEST_F(VacuumRig, AVacuumThatIsLostIsAPartLost) {
+TEST_F(VacuumRig, ALostVacuumIsReportedAsPartLost) {
   SimulatedRig rig(settings);
   hold_vacuum(rig);
   rig.fault[0].pressure_offset_kpa = 10;
@@ -92,7 +92,7 @@ TEST_F(VacuumRig, AVacuumThatIsLostIsAPartLost) {
   EXPECT_EQ(rig.board_kpa(0), 0);
 }
 
-TEST_F(VacuumRig, AVacuumThatDoesNotComeIsNoPart) {
+TEST_F(VacuumRig, AMissingVacuumIsReportedAsNoPart) {
   SimulatedRig rig(settings);
   rig.fault[0].pressure_offset_kpa = rig.fault[1].pressure_offset_kpa = 10;
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -102,7 +102,7 @@ TEST_F(VacuumRig, AVacuumThatDoesNotComeIsNoPart) {
   EXPECT_EQ(rig.result(0), GripResult::no_part);
 }
 
-TEST_F(VacuumRig, ACommandBelowRestThatTheBoardDoesNotHaveIsForgotten) {
+TEST_F(VacuumRig, AStopBelowRestContinuesFromTheBoardOutputs) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence held = vacuum_grip(settings);
   for (const double outputs_kpa : {-4.0, 0.0, 25.0}) {
@@ -118,7 +118,7 @@ TEST_F(VacuumRig, ACommandBelowRestThatTheBoardDoesNotHaveIsForgotten) {
   }
 }
 
-TEST_F(VacuumRig, WhatTheBoardHasVentedIsGoneAtOnce) {
+TEST_F(VacuumRig, AWatchdogTripSetsTheCommandToRest) {
   SimulatedRig rig(settings);
   hold_vacuum(rig);
   rig.bus_fault = FaultCode::board_watchdog_tripped;
@@ -129,7 +129,7 @@ TEST_F(VacuumRig, WhatTheBoardHasVentedIsGoneAtOnce) {
   EXPECT_EQ(rig.output().channels[0].safe_kpa, 0);
 }
 
-TEST_F(VacuumRig, AReleaseToAPressureGoesNoFurtherThanRest) {
+TEST_F(VacuumRig, AReleaseFromVacuumDoesNotCrossTheRestPressure) {
   const PreparedSequence release = sequence_of(
       "name: x\nsteps:\n"
       "  - move: {pressure_kpa: -20, duration_s: 0.2}\n"
@@ -156,7 +156,7 @@ TEST_F(VacuumRig, DetectionBelowRestIsRefused) {
   EXPECT_EQ(refusal("  - grip: {pressure_kpa: 20, duration_s: 1" + detection), "");
 }
 
-TEST_F(VacuumRig, TouchAndSqueezeBelowRestAreRefused) {
+TEST_F(VacuumRig, ContactAndGrippingPressureBelowRestAreRefused) {
   const auto below = [&](const std::string& step) {
     return refusal("  - " + step + "}\n").find("moves channel 'left' below its rest pressure (0 kPa)") !=
            std::string::npos;
@@ -181,7 +181,7 @@ TEST_F(VacuumRig, TouchAndSqueezeBelowRestAreRefused) {
   }
 }
 
-TEST_F(VacuumRig, ABoundThatRestSatisfiesIsRefused) {
+TEST_F(VacuumRig, AVerificationBoundMetAtRestIsRefused) {
   const auto verified_by = [&](const std::string& bound) {
     return refusal("  - grip: {pressure_kpa: -20, duration_s: 1, verify: {by: pressure, window_s: 0.2, " +
                    bound + "}, settle_s: 0.2, timeout_s: 5, on_fail: vent}\n");
@@ -194,7 +194,7 @@ TEST_F(VacuumRig, ABoundThatRestSatisfiesIsRefused) {
   EXPECT_EQ(verified_by("pressure_max_kpa: -15"), "");
 }
 
-TEST_F(VacuumRig, ABoundBelowRestIsRefused) {
+TEST_F(VacuumRig, APressureMaximumBelowRestIsRefused) {
   const auto bounded_by = [&](const std::string& bound) {
     return refusal("  - move: {pressure_kpa: -30, duration_s: 1, pressure_max_kpa: " + bound + "}\n");
   };

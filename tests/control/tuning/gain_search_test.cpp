@@ -7,7 +7,7 @@
 namespace softgrip::control::gain_search_test {
 namespace {
 
-TEST(GainSearch, FindsTheBottomOfABowlFromTheGrid) {
+TEST(GainSearch, FindsTheMinimumOfAConvexCost) {
   int evaluations = 0;
   const auto cost = [&](const PidSettings& pid) {
     ++evaluations;
@@ -21,7 +21,7 @@ TEST(GainSearch, FindsTheBottomOfABowlFromTheGrid) {
   EXPECT_LT(evaluations, 160);
 }
 
-TEST(GainSearch, ACoarseGridLooksAtFewerPointsAndFindsTheBowlToo) {
+TEST(GainSearch, ACoarseGridHasFewerPointsAndFindsTheMinimum) {
   int evaluations = 0;
   const auto cost = [&](const PidSettings& pid) {
     ++evaluations;
@@ -41,7 +41,7 @@ TEST(GainSearch, ACoarseGridLooksAtFewerPointsAndFindsTheBowlToo) {
   EXPECT_NEAR(search_gains(cost, search).kp_kpa_per_mm, 0.37, 0.01);
 }
 
-TEST(GainSearch, EndsWhereAllCornersAreAlike) {
+TEST(GainSearch, EndsIfAllSimplexPointsHaveTheSameCost) {
   int evaluations = 0;
   const GainPoint found = nelder_mead(
       [&](const GainPoint&) {

@@ -38,7 +38,7 @@ TrackingRun run_with(FeedforwardKind kind, std::uint64_t seed) {
   return run;
 }
 
-TEST(TrackingRun, TheFullModelTracksTenTimesBetterThanPidAloneWithAModelThatIsOff) {
+TEST(TrackingRun, AnInaccurateFullModelTracks10TimesBetterThanPid) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const double alone = track(run_with(FeedforwardKind::none, seed)).rmse_mm;
     const double full = track(run_with(FeedforwardKind::full_model, seed)).rmse_mm;
@@ -51,7 +51,7 @@ TEST(TrackingRun, TheBoucWenPartAloneIsNoBetterThanNoFeedforward) {
   EXPECT_GT(track(run_with(FeedforwardKind::bouc_wen, 1)).rmse_mm, alone);
 }
 
-TEST(TrackingRun, TheExchangesLatencyIsMadeUpForWhenItIsKnown) {
+TEST(TrackingRun, KnownExchangeLatencyIsCompensated) {
   TrackingRun run = run_with(FeedforwardKind::full_model, 1);
   run.settings.model = run.finger;
   run.settings.pid = {};
@@ -63,7 +63,7 @@ TEST(TrackingRun, TheExchangesLatencyIsMadeUpForWhenItIsKnown) {
   EXPECT_LT(track(run).rmse_mm, 0.1 * unknown);
 }
 
-TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
+TEST(TrackingRun, TheTraceAgreesWithTheReportedErrors) {
   TrackingRun run = run_with(FeedforwardKind::full_model, 1);
   run.measured_cycles = 1;
   TrackingTrace trace;
@@ -87,7 +87,7 @@ TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
               0.1 * result.rmse_mm);
 }
 
-TEST(TrackingRun, APlannedRunMakesItsPlanWhereItIsGivenNone) {
+TEST(TrackingRun, APlannedRunComputesAMissingPlan) {
   TrackingRun run = run_with(FeedforwardKind::planned, 1);
   run.settling_cycles = 0;
   run.measured_cycles = 1;
@@ -100,7 +100,7 @@ TEST(TrackingRun, APlannedRunMakesItsPlanWhereItIsGivenNone) {
   EXPECT_GT(track(run).rmse_mm, own);
 }
 
-TEST(TrackingRun, OneSeedOneResult) {
+TEST(TrackingRun, EqualSeedsGiveEqualResults) {
   TrackingRun run = run_with(FeedforwardKind::full_model, 3);
   run.reading_step_mm = 100.0 / 65536;
   run.command_step_kpa = 100.0 / 4096;
@@ -112,7 +112,7 @@ TEST(TrackingRun, OneSeedOneResult) {
 
 // Multiplies the parameters of 40 models by random factors with the scatter `scatter`. Counts the models that
 // the health check does not judge healthy. The count must agree with the rate that model_health.h states.
-TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
+TEST(TrackingRun, ModelHealthTolerates5PercentScatterAndNot20Percent) {
   const auto not_healthy = [](double scatter) {
     int count = 0;
     for (std::uint64_t i = 0; i < 40; ++i) {
@@ -136,7 +136,7 @@ TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
 // A loop whose margins are known: a plant 1/(c s) with a dead time, and a proportional controller with the
 // gain K. At the angular frequency K/c, the loop gain |L| is 1. The phase at this frequency is -90 degrees
 // minus the phase lag of the dead time.
-TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
+TEST(LoopMargins, AgreeWithTheAnalyticMarginsOfAnIntegrator) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
   model = model::without_block(model, *model::find_block("valve_lag"));
   auto values = model::flat_values(model);
@@ -202,7 +202,7 @@ model::Model stiff_at_its_end() {
 
 // With integral control alone, the loop gain is |L| = ki gain / (2 pi f). The crossover frequency therefore
 // shows which gain loop_margins() has used.
-TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
+TEST(LoopMargins, UseTheSmallestGainOfTwoLoadCycles) {
   const model::Model model = stiff_at_its_end();
   const double gain = smallest_gain(model, 60);
   ASSERT_GT(gain, 0);
@@ -212,7 +212,7 @@ TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
   EXPECT_NEAR(2 * M_PI * margins.crossover_hz / (ki * gain), 1, 0.01);
 }
 
-TEST(LoopMargins, LookAtBothSidesOfTheRange) {
+TEST(LoopMargins, DependOnThePressureRangeBelowZero) {
   const auto margins = [](const LimitSettings& limits) {
     return loop_margins(stiff_at_its_end(), {0, 1, 0, 0.02, 1, AntiWindup::none, 1}, limits, tick_s, tick_s);
   };
@@ -223,7 +223,7 @@ TEST(LoopMargins, LookAtBothSidesOfTheRange) {
             0.01);
 }
 
-TEST(LoopMargins, OfTheRigsGainsAreThoseThatWereAskedFor) {
+TEST(LoopMargins, TheStudyGainsMeetTheSensitivityLimit) {
   const LoopMargins margins = loop_margins(model_named("bench_twin"), found, to_60_kpa, tick_s, tick_s);
   EXPECT_LT(margins.sensitivity, 2.05);
 }

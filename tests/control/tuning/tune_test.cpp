@@ -20,7 +20,7 @@ TuneTask quick_task(FeedforwardKind kind) {
   return task;
 }
 
-TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
+TEST(Tune, KeepsTheSensitivityLimitAndBeatsLowGains) {
   const TuneTask task = quick_task(FeedforwardKind::none);
   const Tuned tuned = tune(task);
   EXPECT_LE(tuned.sensitivity, task.most_sensitivity);
@@ -35,7 +35,7 @@ TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
   EXPECT_NE(tuned.limited_by.find("dead time"), std::string::npos) << tuned.limited_by;
 }
 
-TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
+TEST(Tune, ReportsTheMarginsOfTheModelWithoutMismatch) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 4;
   task.mismatch = 0;  // no mismatch, so every simulated finger equals the model
@@ -48,7 +48,7 @@ TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
   EXPECT_EQ(tuned.crossover_hz, margins.crossover_hz);
 }
 
-TEST(Tune, WithoutAnyMarginLeftItFindsTheCalmestGains) {
+TEST(Tune, AnUnreachableLimitReducesTheSensitivity) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.most_sensitivity = 0.5;  // lower than the maximum sensitivity of any loop, so no gains meet this
                                 // requirement
@@ -57,7 +57,7 @@ TEST(Tune, WithoutAnyMarginLeftItFindsTheCalmestGains) {
   EXPECT_LT(tuned.sensitivity, tune(task).sensitivity);
 }
 
-TEST(Tune, LessSensitivityCostsError) {
+TEST(Tune, ALowerSensitivityLimitIncreasesTheError) {
   TuneTask task = quick_task(FeedforwardKind::none);
   const Tuned bold = tune(task);
   task.most_sensitivity = 1.3;
@@ -68,7 +68,7 @@ TEST(Tune, LessSensitivityCostsError) {
 
 // The result text states which limit restricts the gains and which part of the error is largest. Both
 // statements must agree with the numbers of the case.
-TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
+TEST(Tune, ReportsTheLimitingEffectAndTheLargestError) {
   struct Case {
     const char* name;
     FeedforwardKind kind;
@@ -96,7 +96,7 @@ TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
   }
 }
 
-TEST(Tune, AValveWithoutALagIsNotSaidToHaveOne) {
+TEST(Tune, NamesAValveLagOnlyIfTheModelHasALag) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 12;
   task.most_sensitivity = 1.5;
@@ -137,7 +137,7 @@ TEST(Tune, SlowReferencesSettleForAQuarterOfACycle) {
   }
 }
 
-TEST(Tune, OneSeedOneResult) {
+TEST(Tune, EqualSeedsGiveEqualResults) {
   TuneTask task = quick_task(FeedforwardKind::full_model);
   task.iterations = 4;
   const Tuned first = tune(task);
@@ -166,7 +166,7 @@ TEST(Tune, TheReferenceIsWithinReachBelowRest) {
 
 // The published model has no inverse. The test tunes the planned feedforward and the PID alone in the same
 // way and compares their results.
-TEST(Tune, PlannedOnThePublishedModelIsThreeTimesBetterThanItsPid) {
+TEST(Tune, PlannedTracksThePublishedModel3TimesBetterThanPid) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.finger = task.channel.model = sim::model_named("zhang2025");
   task.frequencies_hz = {0.2};

@@ -29,7 +29,7 @@ Item item(std::uint64_t number) {
   return made;
 }
 
-TEST(Broadcast, EveryReaderTakesEverythingInOrder) {
+TEST(Broadcast, EveryReaderReceivesAllItemsInOrder) {
   Broadcast<Item> events(8);
   Broadcast<Item>::Reader eager(events);
   Broadcast<Item>::Reader slow(events);
@@ -48,7 +48,7 @@ TEST(Broadcast, EveryReaderTakesEverythingInOrder) {
   EXPECT_EQ(eager.lost() + slow.lost(), 0U);
 }
 
-TEST(Broadcast, WhoLagsLosesTheOldestAndNobodyElseDoes) {
+TEST(Broadcast, OnlyASlowReaderLosesTheOldestItems) {
   Broadcast<Item> events(4);
   Broadcast<Item>::Reader eager(events);
   Broadcast<Item>::Reader slow(events);
@@ -73,7 +73,7 @@ struct AtTheWorstMoment {
 };
 using Interrupted = Broadcast<Item, AtTheWorstMoment>;
 
-TEST(Broadcast, AnItemThatIsOverwrittenWhileItIsTakenIsLostAndNotTorn) {
+TEST(Broadcast, AnItemOverwrittenDuringTheCopyIsCountedAsLost) {
   Interrupted events(4);
   Interrupted::Reader reader(events);
   for (std::uint64_t n = 1; n <= 4; ++n) events.push(item(n));
@@ -85,7 +85,7 @@ TEST(Broadcast, AnItemThatIsOverwrittenWhileItIsTakenIsLostAndNotTorn) {
   EXPECT_EQ(reader.lost(), 1U);
 }
 
-TEST(Broadcast, AnItemIsThereOnlyWhenAllOfItIsThere) {
+TEST(Broadcast, AnItemIsReadableOnlyAfterACompleteCopy) {
   Interrupted events(4);
   Interrupted::Reader reader(events);
   bool taken = true;
@@ -102,7 +102,7 @@ TEST(Broadcast, AnItemIsThereOnlyWhenAllOfItIsThere) {
   EXPECT_EQ(seen.words[0], 2U);
 }
 
-TEST(Broadcast, NothingIsTornAndEverythingIsTakenOrCountedUnderARace) {
+TEST(Broadcast, ConcurrentReadersReceiveOrCountEveryItem) {
   Broadcast<Item> events(4);
   const std::uint64_t count = testing::thread_sanitizer ? 20'000 : 500'000;
   std::atomic<bool> done{false};

@@ -182,7 +182,7 @@ std::string follow(std::span<const Step> path) {
   return {};
 }
 
-TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
+TEST(BusSearch, NoEventOrderRaisesAnOutputWhileInhibited) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
   constexpr std::size_t depth = 4;  // number of events; lower with sanitizers, because the test is then 100
                                     // times slower

@@ -52,7 +52,7 @@ class BusTest : public ::testing::Test {
   Bus bus_{board_, rig_, loop_, reconnect_, clock_, shared_, statistics_};
 };
 
-TEST_F(BusTest, WritesNothingBeforeTheLoopHasSpoken) {
+TEST_F(BusTest, WritesNothingBeforeTheFirstCommand) {
   for (int i = 0; i < 20; ++i) step();
   EXPECT_TRUE(board_.written.empty());
   EXPECT_TRUE(board_.connect_attempts.empty());
@@ -69,7 +69,7 @@ TEST_F(BusTest, WritesTheNewestCommandsAndPublishesTheReadings) {
   EXPECT_EQ(events(), std::vector<BusEvent::Kind>{BusEvent::Kind::connected});
 }
 
-TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThanThem) {
+TEST_F(BusTest, SafeOutputsLastUntilTheLoopConfirmsTheInhibition) {
   command(12, 3, true);
   step();
   for (std::uint32_t i = 1; i < loop_.max_missed_commands; ++i) {
@@ -104,7 +104,7 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
                                                    BusEvent::Kind::loop_back}));
 }
 
-TEST_F(BusTest, ALoopThatComesBackWithTheNextFallOfItsMotionIsFollowedDown) {
+TEST_F(BusTest, AfterACommandTimeoutOnlyLowerCommandsAreWritten) {
   command(12, 9, true);
   step();
   for (std::uint32_t i = 0; i < loop_.max_missed_commands; ++i) step();
@@ -128,7 +128,7 @@ class WatchedBusTest : public BusTest {
   }
 };
 
-TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt) {
+TEST_F(WatchedBusTest, AGapOfTheWatchdogTimeIsAFaultAndBlocksRises) {
   Bus bus = make_bus();
   command(35, 35, true);
   step(bus);
@@ -146,7 +146,7 @@ TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt
   EXPECT_EQ(fault(), FaultCode::none);
 }
 
-TEST_F(WatchedBusTest, AGapIsCountedFromWhenTheLastGoodExchangeBegan) {
+TEST_F(WatchedBusTest, AGapStartsWhenTheLastGoodExchangeBegins) {
   for (const Nanoseconds gap : {watchdog - margin - 1, watchdog - margin}) {
     Bus bus = make_bus();
     command(35, 35, true);
@@ -173,7 +173,7 @@ TEST_F(WatchedBusTest, FailedExchangesDoNotEndAGap) {
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
 }
 
-TEST_F(WatchedBusTest, AGapIsToldOnceHoweverLongExchangesFailBehindIt) {
+TEST_F(WatchedBusTest, AGapIsReportedOnceDuringLongExchangeFailures) {
   Bus bus = make_bus();
   command(35, 35, true);
   step(bus);
@@ -187,7 +187,7 @@ TEST_F(WatchedBusTest, AGapIsToldOnceHoweverLongExchangesFailBehindIt) {
   EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::failed}));
 }
 
-TEST_F(WatchedBusTest, TheFirstWriteIsNotBelowTheRangeThoughConnectingFailedBefore) {
+TEST_F(WatchedBusTest, TheFirstWriteIsInRangeAfterAFailedConnection) {
   Bus bus = make_bus();
   board_.next_connect = BusStatus::disconnected;
   command(1, 1, false);
@@ -198,7 +198,7 @@ TEST_F(WatchedBusTest, TheFirstWriteIsNotBelowTheRangeThoughConnectingFailedBefo
   EXPECT_EQ(last_written(), 1);
 }
 
-TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
+TEST_F(WatchedBusTest, AnExchangeLongerThanTheWatchdogIsAFault) {
   Bus bus = make_bus();
   command(35, 35, true);
   step(bus);
@@ -239,7 +239,7 @@ TEST_F(VacuumBusTest, OutputsLeaveRestOnEitherSideOnlyWhileASequenceRuns) {
   EXPECT_EQ(last_written(), 0);
 }
 
-TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
+TEST_F(VacuumBusTest, AWatchdogTripSetsOutputsToRestNotToVacuum) {
   for (const double before_kpa : {35.0, -35.0}) {
     Bus bus = make_bus();
     command(before_kpa, before_kpa, true);
@@ -261,7 +261,7 @@ TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
   }
 }
 
-TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
+TEST_F(VacuumBusTest, UnconfirmedOutputsAreReportedNearerToRest) {
   Bus bus = make_bus();
   command(-12, 0, true);
   step(bus);
@@ -279,7 +279,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
 }
 
 /// If several attempts to connect fail for the same reason, the event log must contain this reason only once.
-TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
+TEST_F(BusTest, ANewConnectionFailureReasonIsReportedOnce) {
   const auto failures = [this] {
     std::vector<std::string> texts;
     for (BusEvent event; shared_.bus_events.pop(event);) {
@@ -323,7 +323,7 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
 
 /// If a board accepts a connection and closes it immediately, no event may report that the board is
 /// connected.
-TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
+TEST_F(BusTest, AConnectionIsReportedAfterTheFirstResponse) {
   const auto told = [this] {
     std::vector<std::pair<BusEvent::Kind, BusStatus>> list;
     for (BusEvent event; shared_.bus_events.pop(event);) list.emplace_back(event.kind, event.status);
@@ -359,7 +359,7 @@ TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
   EXPECT_EQ(told(), (Told{{Kind::recovered, BusStatus::ok}}));
 }
 
-TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
+TEST_F(BusTest, AClientResettingTheWatchdogIsReportedOncePerSession) {
   const std::vector<BusEvent::Kind> none;
   command(12, 0, true);
   board_.counted_clients = 2;
@@ -412,7 +412,7 @@ TEST_F(BusTest, ABoardWithoutWatchdogKeepsItsOutputsThroughAnyGap) {
   EXPECT_EQ(fault(), FaultCode::none);
 }
 
-TEST_F(BusTest, WhatTheLoopSaidWhileTheSessionWasRebuiltIsWhatIsWritten) {
+TEST_F(BusTest, CommandsSentDuringAReconnectionAreWritten) {
   command(12, 0, true);
   step();
   board_.next_exchange = BusStatus::timed_out;
@@ -424,7 +424,7 @@ TEST_F(BusTest, WhatTheLoopSaidWhileTheSessionWasRebuiltIsWhatIsWritten) {
   EXPECT_EQ(last_written(), 2);
 }
 
-TEST_F(BusTest, OutputsThatTheBoardDidNotConfirmAreTheLowerOnes) {
+TEST_F(BusTest, UnconfirmedOutputsAreReportedAsTheLowerValue) {
   EXPECT_TRUE(std::isinf(shared_.bus.value().outputs_kpa[0]));
   command(12, 0, true);
   step();
@@ -438,7 +438,7 @@ TEST_F(BusTest, OutputsThatTheBoardDidNotConfirmAreTheLowerOnes) {
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 11);
 }
 
-TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
+TEST_F(BusTest, ReconnectionPausesGrowAfterALostSession) {
   reconnect_.longest_pause = std::chrono::milliseconds(400);
   command(12, 0, true);
   step();
@@ -472,7 +472,7 @@ TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
                                                    BusEvent::Kind::connected, BusEvent::Kind::recovered}));
 }
 
-TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
+TEST_F(BusTest, SessionsThatFailAtOnceIncreaseTheReconnectionPause) {
   reconnect_.longest_pause = std::chrono::milliseconds(400);
   command(12, 0, true);
   step();
@@ -501,7 +501,7 @@ TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
 }
 
-TEST_F(BusTest, CyclesWithoutASessionCountAsFailuresWhileItWaits) {
+TEST_F(BusTest, CyclesWithoutASessionCountAsFailures) {
   board_.next_connect = BusStatus::disconnected;
   for (int i = 0; i < 10; ++i) {
     command(12, 0, false);
@@ -510,7 +510,7 @@ TEST_F(BusTest, CyclesWithoutASessionCountAsFailuresWhileItWaits) {
   EXPECT_EQ(shared_.bus.value().health.consecutive_failures, 10U);
 }
 
-TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
+TEST_F(BusTest, ARefusingResponseKeepsTheSession) {
   command(12, 0, true);
   step();
   for (const BusStatus status : {BusStatus::exception, BusStatus::write_refused}) {
@@ -525,7 +525,7 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
 
 // In this test, another Modbus client writes 5 kPa after the write of the daemon. The daemon then reads the
 // outputs back.
-TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
+TEST_F(BusTest, ReadOutputsNearerToRestLimitTheCommands) {
   command(12, 0, true);
   step();
   board_.next_exchange = BusStatus::write_refused;
@@ -545,7 +545,7 @@ TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   EXPECT_EQ(last_written(), 4);
 }
 
-TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
+TEST_F(BusTest, ReadOutputsAboveTheCommandOrNaNAreIgnored) {
   for (const double found : {20.0, std::numeric_limits<double>::quiet_NaN()}) {
     board_.found = found;
     command(12, 0, false, shared_.bus.value().health.inhibit);
@@ -559,7 +559,7 @@ TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
 
 // A gateway may repeat an old reading, so the driver can read outputs that are nearer to rest than the
 // commands. The daemon must then continue to hold the part.
-TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
+TEST_F(BusTest, AHoldContinuesDespiteReadOutputsNearerToRest) {
   command(12, 12, true);
   step();
   board_.next_exchange = BusStatus::write_refused;
@@ -570,7 +570,7 @@ TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
   EXPECT_EQ(last_written(), 12);
 }
 
-TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBackByTheFirstCommandsThatDoNotHold) {
+TEST_F(BusTest, ReadOutputsLimitTheFirstCommandsWithoutHold) {
   command(12, 12, true);
   step();
   board_.next_exchange = BusStatus::write_refused;
@@ -582,7 +582,7 @@ TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBackByTheFirstCommandsThatD
   EXPECT_EQ(last_written(), 5);
 }
 
-TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHeardIt) {
+TEST_F(BusTest, ABoardFaultIsReportedUntilTheLoopConfirms) {
   for (const BusStatus said : {BusStatus::watchdog_tripped, BusStatus::write_refused}) {
     command(12, 0, true);
     step();
@@ -607,7 +607,7 @@ TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHear
   }
 }
 
-TEST_F(BusTest, TheLastCommandsAreConfirmedThoughTheLoopNeverHeardOfTheFault) {
+TEST_F(BusTest, LastCommandsAreConfirmedDespiteAnUnreadFault) {
   command(12, 0, true);
   step();
   for (std::uint32_t i = 0; i < loop_.max_missed_commands; ++i) step();
@@ -620,7 +620,7 @@ TEST_F(BusTest, TheLastCommandsAreConfirmedThoughTheLoopNeverHeardOfTheFault) {
   EXPECT_EQ(last_written(), 0);
 }
 
-TEST_F(BusTest, LeavesWhenTheBoardHasConfirmedTheLastCommands) {
+TEST_F(BusTest, SafeStateIsConfirmedOnlyAfterAGoodExchange) {
   Commands last;
   last.last = true;
   last.command_kpa.fill(1);
@@ -635,7 +635,7 @@ TEST_F(BusTest, LeavesWhenTheBoardHasConfirmedTheLastCommands) {
   EXPECT_EQ(last_written(), 1);
 }
 
-TEST(BusThread, GivesUpLeavingWhenTheBoardDoesNotAnswer) {
+TEST(BusThread, TheShutdownEndsIfTheBoardDoesNotRespond) {
   const MonotonicClock clock;
   ScriptedBoard board(1, clock);
   board.next_connect = BusStatus::disconnected;

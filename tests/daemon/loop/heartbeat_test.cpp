@@ -13,7 +13,7 @@ TEST(Heartbeat, BeatsWhileAllCountsGrow) {
     EXPECT_TRUE(heartbeat.beats(static_cast<Nanoseconds>(i) * 10, {i, i}));
 }
 
-TEST(Heartbeat, StopsWhenOneStandsStillLongerThanItMay) {
+TEST(Heartbeat, StopsWhenACounterStallsBeyondTheTimeLimit) {
   for (const std::size_t hung : {std::size_t{0}, std::size_t{1}}) {
     Heartbeat heartbeat({10, 30});
     const Nanoseconds patience = hung == 0 ? 10 : 30;
@@ -30,7 +30,7 @@ TEST(Heartbeat, StopsWhenOneStandsStillLongerThanItMay) {
 // After one hour of attempts to connect, the counter of the bus thread is far behind the counter of the
 // control loop. If the loop then stalls, the counter of the bus thread continues to grow. This growth must
 // not hide the stall of the loop.
-TEST(Heartbeat, ACountThatIsBehindDoesNotSpeakForTheOther) {
+TEST(Heartbeat, AGrowingLowerCounterDoesNotHideAStall) {
   Heartbeat heartbeat({10, 10});
   EXPECT_TRUE(heartbeat.beats(0, {1'000'000, 10}));
   std::uint64_t bus = 10;

@@ -18,7 +18,7 @@ TEST(Histogram, IsEmptyAtFirst) {
   EXPECT_TRUE(histogram.bins().empty());
 }
 
-TEST(Histogram, CountsNegativeDurationsAsZeroAndEndlessOnesInTheLastBin) {
+TEST(Histogram, CountsNegativeAsZeroAndHugeValuesInTheLastBin) {
   Histogram histogram;
   histogram.add(-5);
   histogram.add(INT64_MAX / 2);
@@ -28,7 +28,7 @@ TEST(Histogram, CountsNegativeDurationsAsZeroAndEndlessOnesInTheLastBin) {
   EXPECT_EQ(histogram.quantile_ns(1), INT64_MAX / 2);
 }
 
-TEST(Histogram, BinsHoldWhatTheySay) {
+TEST(Histogram, EachValueFallsIntoTheBinThatContainsIt) {
   // Each duration must lie within the limits of its bin. No bin may be wider than 0.8 % of a duration in the
   // bin, apart from 1 ns.
   for (std::int64_t duration = 1; duration < (std::int64_t{1} << 35); duration += 1 + duration / 97) {

@@ -135,7 +135,7 @@ class WatchedTicks {
   Nanoseconds due_;
 };
 
-TEST(LoopRules, TheHookSeesAnAllocation) {
+TEST(LoopRules, TheHookCountsAllocationsAndReleases) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "with sanitizers, the program uses a different allocator";
   allocations.store(0);
   armed = true;
@@ -218,7 +218,7 @@ void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around)
   loop.join();
 }
 
-TEST(LoopRules, NoTickPageFaults) {
+TEST(LoopRules, NoTickCausesPageFaults) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers cause additional page faults";
   const auto parts = make_parts(false);
   rusage before{};
@@ -291,7 +291,7 @@ int verdict() {
   return forbidden;
 }
 
-TEST(LoopRules, TheFilterSeesASystemCall) {
+TEST(LoopRules, TheFilterDetectsAForbiddenSystemCall) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make additional system calls";
   const auto body = [] {
     std::atomic<bool> done{false};
@@ -309,7 +309,7 @@ TEST(LoopRules, TheFilterSeesASystemCall) {
   EXPECT_EQ(in_child(body), forbidden);
 }
 
-TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
+TEST(LoopRules, TicksUseOnlyClockAndSleepSystemCalls) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make additional system calls";
   const auto body = [] {
     const auto parts = make_parts(false);

@@ -64,12 +64,12 @@ TEST_F(LoopTest, EveryTickSendsCommandsASnapshotAndARowPerChannel) {
   EXPECT_EQ(records.back().channel, 1);
 }
 
-TEST_F(LoopTest, ALateWakeUpIsMeasuredFromTheGrid) {
+TEST_F(LoopTest, WakeUpLatencyIsMeasuredFromTheSchedule) {
   tick(250'000);
   EXPECT_EQ(parts_->loop_statistics.wake_up.summary().max_ns, 250'000);
 }
 
-TEST_F(LoopTest, ComputingIsMeasuredFromTheWakeUpAndAnAgeOnlyOnceThereIsAReading) {
+TEST_F(LoopTest, ComputeTimeStartsAtWakeUpAndAgeAtFirstReading) {
   tick();
   EXPECT_EQ(parts_->loop_statistics.reading_age.summary().count, 0U);
   EXPECT_EQ(parts_->loop_statistics.compute.summary().max_ns, 0) << "no virtual time passes in a tick";
@@ -78,7 +78,7 @@ TEST_F(LoopTest, ComputingIsMeasuredFromTheWakeUpAndAnAgeOnlyOnceThereIsAReading
   EXPECT_EQ(parts_->loop_statistics.reading_age.summary().count, 1U);
 }
 
-TEST_F(LoopTest, InputsThatNobodyReadsAnyMoreAreLost) {
+TEST_F(LoopTest, InputsNotReadForTooLongCauseAFault) {
   ASSERT_TRUE(until(State::idle));
   parts_->shared.inputs.longest_silence = 10 * parts_->period();
   parts_->shared.inputs.looked_at = due_;
@@ -93,7 +93,7 @@ TEST_F(LoopTest, InputsThatNobodyReadsAnyMoreAreLost) {
   EXPECT_EQ(snapshot().first_fault.code, FaultCode::inputs_lost);
 }
 
-TEST_F(LoopTest, InputsThatAreSaidToBeLostAreLostAtOnce) {
+TEST_F(LoopTest, InputsReportedLostCauseAFaultAtOnce) {
   ASSERT_TRUE(until(State::idle));
   parts_->shared.inputs.longest_silence = 1'000 * parts_->period();
   parts_->shared.inputs.looked_at = due_;
@@ -102,7 +102,7 @@ TEST_F(LoopTest, InputsThatAreSaidToBeLostAreLostAtOnce) {
   EXPECT_EQ(snapshot().state, State::faulted);
 }
 
-TEST_F(LoopTest, RowsThatFindNoRoomAreCountedAndEventsStillFindTheirs) {
+TEST_F(LoopTest, DroppedRowsAreCountedAndEventsAreKept) {
   const std::size_t capacity = parts_->shared.records.capacity();
   for (std::size_t i = 0; i < capacity; ++i) {
     tick();
@@ -168,7 +168,7 @@ TEST_F(LoopTest, ACutWireStopsMotionUntilAcknowledgedAndStartedAgain) {
   EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "no finger moves without a command";
 }
 
-TEST_F(LoopTest, LeavingSendsTheSafeOutputsAsTheLastOnes) {
+TEST_F(LoopTest, TheShutdownSendsSafeOutputsAsLastCommands) {
   ASSERT_TRUE(until(State::idle));
   parts_->service.submit(control::Request::Kind::start,
                          testing::example_sequence(parts_->rig, "pick_stone.yaml"));
@@ -196,7 +196,7 @@ TEST_F(LoopTest, DecimationRecordsEveryNthTick) {
   EXPECT_EQ(records.size(), 20U);
 }
 
-TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
+TEST(LoopThread, MissedCyclesAreCountedAndReportedToTheController) {
   rig::RigFile rig = testing::example_rig("rig.yaml");
   rig.settings.faults.overrun_cycles = 10;
   DaemonParts parts(std::move(rig), {});

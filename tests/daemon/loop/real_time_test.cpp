@@ -36,7 +36,7 @@ RealTimeReport prepared(const rig::RealTimeSettings& settings, int priority,
   return report;
 }
 
-TEST(RealTime, SaysVerifiedOnlyForWhatTheKernelHasInForce) {
+TEST(RealTime, ReportsVerifiedOnlyForSettingsInForce) {
   rig::RealTimeSettings settings;
   settings.cpus = {0};
   int policy = -1;
@@ -54,7 +54,7 @@ TEST(RealTime, SaysVerifiedOnlyForWhatTheKernelHasInForce) {
   EXPECT_EQ(processors->outcome == Outcome::verified, CPU_COUNT(&cpus) == 1 && CPU_ISSET(0, &cpus));
 }
 
-TEST(RealTime, WhatIsNotAskedForCannotFail) {
+TEST(RealTime, SettingsNotRequestedAreNeverReportedAsFailed) {
   rig::RealTimeSettings settings;
   settings.lock_memory = false;
   settings.prefault_heap_bytes = 0;
@@ -67,7 +67,7 @@ TEST(RealTime, WhatIsNotAskedForCannotFail) {
   for (const RealTimeStep& step : report.steps()) EXPECT_EQ(step.outcome, Outcome::not_asked) << step.name;
 }
 
-TEST(RealTime, AProcessorThatIsNotThereIsAFailureWithItsReasonAndCost) {
+TEST(RealTime, AMissingProcessorIsAFailureWithTheCost) {
   rig::RealTimeSettings settings;
   settings.cpus = {1023};
   const RealTimeReport report = prepared(settings, 0, [] {});
@@ -85,7 +85,7 @@ constexpr bool sanitized = false;
 #endif
 
 /// The test runs in a child process that drops its privileges.
-TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
+TEST(RealTime, WithoutPrivilegesEachFailureNamesTheLimit) {
   if (sanitized) GTEST_SKIP() << "sanitizers intercept the locking of memory";
   const pid_t child = fork();
   if (child == 0) {
@@ -110,7 +110,7 @@ TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST(RealTime, ReportsTheStackThatWasTouched) {
+TEST(RealTime, ReportsThePrefaultedStackAsVerified) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "ThreadSanitizer causes additional page faults for every touched page";
 #endif
@@ -137,7 +137,7 @@ TEST(RealTime, AStackThatIsTooSmallIsAFailureAndNoCrash) {
   EXPECT_EQ(find(report, "stack of the loop")->outcome, Outcome::failed);
 }
 
-TEST(Thread, AnExceptionInAThreadIsToldAndEndsNothingElse) {
+TEST(Thread, AnExceptionInAThreadIsReported) {
   std::string told;
   Thread thread(
       {.name = "throws"}, [] { throw std::runtime_error("on purpose"); },
@@ -146,7 +146,7 @@ TEST(Thread, AnExceptionInAThreadIsToldAndEndsNothingElse) {
   EXPECT_EQ(told, "on purpose");
 }
 
-TEST(Thread, HasItsNameAndItsStack) {
+TEST(Thread, HasTheRequestedStackAndATruncatedName) {
   std::size_t stack_bytes = 0;
   char name[16] = "";
   Thread thread(

@@ -68,7 +68,7 @@ std::uint64_t wrong_items(Queue& queue, std::uint64_t count) {
   return wrong;
 }
 
-TEST(Ring, RoundsItsCapacityUp) {
+TEST(Ring, RoundsTheCapacityUpToAPowerOfTwo) {
   EXPECT_EQ(Ring<int>(100).capacity(), 128U);
 }
 
@@ -120,7 +120,7 @@ bool taken_before_it_was_there(Queue& queue) {
   return taken;
 }
 
-TEST(Ring, AnItemIsThereOnlyWhenAllOfItIsThere) {
+TEST(Ring, AnItemIsReadableOnlyAfterACompleteCopy) {
   Ring<TornValue> ring(8);
   EXPECT_FALSE(taken_before_it_was_there(ring));
   TornValue item;
@@ -129,12 +129,12 @@ TEST(Ring, AnItemIsThereOnlyWhenAllOfItIsThere) {
   EXPECT_EQ(item.number(), 7U);
 }
 
-TEST(Ring, TheSameInterruptionTakesHalfAnItemFromAWrongRing) {
+TEST(Ring, TheInterruptionTestDetectsAnIncorrectRing) {
   AnnouncedTooEarly ring(8);
   EXPECT_TRUE(taken_before_it_was_there(ring));
 }
 
-TEST(Ring, APlaceIsFreeOnlyWhenAllOfItsItemWasTaken) {
+TEST(Ring, ASlotIsFreeOnlyAfterTheItemIsCopied) {
   Ring<TornValue> ring(2);
   ring.push(TornValue(1));
   ring.push(TornValue(2));
@@ -147,7 +147,7 @@ TEST(Ring, APlaceIsFreeOnlyWhenAllOfItsItemWasTaken) {
   EXPECT_EQ(item.number(), 1U);
 }
 
-TEST(Ring, LosesAndTearsNothingUnderARace) {
+TEST(Ring, ConcurrentUseLosesAndTearsNoItem) {
   Ring<TornValue> ring(8);
   EXPECT_EQ(wrong_items(ring, testing::thread_sanitizer ? 2000 : 50'000), 0U);
 }

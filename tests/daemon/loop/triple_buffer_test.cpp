@@ -72,13 +72,13 @@ Seen race(Cell& cell, std::uint64_t count) {
   return seen;
 }
 
-TEST(TripleBuffer, GivesNothingBeforeTheFirstPublish) {
+TEST(TripleBuffer, ReturnsNoNewValueBeforeTheFirstPublish) {
   TripleBuffer<int> cell(7);
   EXPECT_FALSE(cell.fetch());
   EXPECT_EQ(cell.value(), 7);
 }
 
-TEST(TripleBuffer, GivesTheNewestOnce) {
+TEST(TripleBuffer, ReturnsTheNewestValueOnce) {
   TripleBuffer<int> cell;
   for (int n = 1; n <= 5; ++n) cell.publish(n);
   EXPECT_TRUE(cell.fetch());
@@ -90,7 +90,7 @@ TEST(TripleBuffer, GivesTheNewestOnce) {
   EXPECT_EQ(cell.value(), 6);
 }
 
-TEST(TripleBuffer, KeepsTheHeldValueWhileTheWriterGoesOn) {
+TEST(TripleBuffer, KeepsTheFetchedValueWhileTheWriterPublishes) {
   TripleBuffer<int> cell;
   cell.publish(1);
   ASSERT_TRUE(cell.fetch());
@@ -119,19 +119,19 @@ bool whole_when_interrupted(int publishes) {
   return copy.whole() && copy.number() == 1;
 }
 
-TEST(TripleBuffer, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
+TEST(TripleBuffer, ACopyIsCompleteDespiteConcurrentPublishes) {
   for (int publishes = 0; publishes < 10; ++publishes) {
     EXPECT_TRUE(whole_when_interrupted<TripleBuffer<TornValue>>(publishes)) << publishes;
   }
 }
 
-TEST(TripleBuffer, TheSameInterruptionTearsAWrongCell) {
+TEST(TripleBuffer, TheInterruptionTestDetectsAnIncorrectBuffer) {
   EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1))
       << "a data race is detected only if the writer publishes twice while the reader copies";
   EXPECT_FALSE(whole_when_interrupted<TwoSlots<TornValue>>(2));
 }
 
-TEST(TripleBuffer, IsNeverTornNorOlderThanBeforeUnderARace) {
+TEST(TripleBuffer, ConcurrentReadsAreCompleteAndNeverGoBackward) {
   TripleBuffer<TornValue> cell;
   const std::uint64_t count = testing::thread_sanitizer ? 2000 : 50'000;
   const Seen seen = race(cell, count);

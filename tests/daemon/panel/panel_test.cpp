@@ -87,13 +87,13 @@ class PanelTest : public ::testing::Test {
   std::optional<Panel> panel_;
 };
 
-TEST_F(PanelTest, StartsPressedAndOpenBeforeAnythingIsRead) {
+TEST_F(PanelTest, StartsWithStopPressedAndInterlockOpen) {
   make(all_lines());
   EXPECT_TRUE(pressed());
   EXPECT_TRUE(shared_.inputs.interlock_open.load());
 }
 
-TEST_F(PanelTest, IsNotReleasedBeforeTheLoopHasLatchedIt) {
+TEST_F(PanelTest, TheStopIsReleasedOnlyAfterTheFaultIsLatched) {
   make(all_lines());
   run(0.05);
   EXPECT_TRUE(pressed())
@@ -103,7 +103,7 @@ TEST_F(PanelTest, IsNotReleasedBeforeTheLoopHasLatchedIt) {
   EXPECT_FALSE(pressed());
 }
 
-TEST_F(PanelTest, AnInputThatTheRigDoesNotHaveSaysNothing) {
+TEST_F(PanelTest, MissingInputLinesCountAsReleasedAndClosed) {
   rig::GpioSettings settings = all_lines();
   settings.lines.erase(settings.lines.begin(), settings.lines.begin() + 2);
   make(settings);
@@ -112,7 +112,7 @@ TEST_F(PanelTest, AnInputThatTheRigDoesNotHaveSaysNothing) {
   EXPECT_FALSE(shared_.inputs.interlock_open.load());
 }
 
-TEST_F(PanelTest, PressingIsSeenWithinTheDebounceTimeAndALook) {
+TEST_F(PanelTest, PressingIsDetectedAfterTheDebounceTime) {
   make(all_lines());
   make_ready();
   ASSERT_FALSE(pressed());
@@ -124,7 +124,7 @@ TEST_F(PanelTest, PressingIsSeenWithinTheDebounceTimeAndALook) {
       << "the debounce time is 5 ms, but a busy machine may need longer";
 }
 
-TEST_F(PanelTest, PressingWithoutAnEdgeIsSeenAllTheSame) {
+TEST_F(PanelTest, PressingIsDetectedWithoutAnEdgeEvent) {
   make(all_lines());
   make_ready();
   terminals_.set(GpioRole::emergency_stop, true, false);
@@ -132,7 +132,7 @@ TEST_F(PanelTest, PressingWithoutAnEdgeIsSeenAllTheSame) {
   EXPECT_TRUE(pressed());
 }
 
-TEST_F(PanelTest, ThePartOpensAndClosesTheInterlock) {
+TEST_F(PanelTest, ThePartInPositionInputClosesTheInterlock) {
   make(all_lines());
   run(0.03);
   EXPECT_TRUE(shared_.inputs.interlock_open.load());
@@ -160,7 +160,7 @@ TEST_F(PanelTest, EnableAndLampsFollowTheState) {
   EXPECT_TRUE(shared_.enable_on.load());
 }
 
-TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
+TEST_F(PanelTest, HeldPressureMakesTheActiveLampBlink) {
   make(all_lines());
   make_ready();
   const auto lit = [&](GpioRole role) {
@@ -184,7 +184,7 @@ TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
   EXPECT_EQ(lit(GpioRole::fault_lamp), 0) << "the lamp no longer flashes";
 }
 
-TEST_F(PanelTest, ALoopThatHangsUnderPressureHasASteadyFaultLamp) {
+TEST_F(PanelTest, AStalledLoopTurnsTheFaultLampSteadilyOn) {
   rig::GpioSettings settings = all_lines();
   settings.stale_after_s = 0.05;
   make(settings);
@@ -197,7 +197,7 @@ TEST_F(PanelTest, ALoopThatHangsUnderPressureHasASteadyFaultLamp) {
   EXPECT_EQ(terminals_.written(GpioRole::fault_lamp).size(), before);
 }
 
-TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
+TEST_F(PanelTest, AFaultSwitchesEnableOffOnlyIfConfigured) {
   for (const bool drops : {true, false}) {
     rig::GpioSettings settings = all_lines();
     settings.keeps_enable_on_fault = !drops;
@@ -214,7 +214,7 @@ TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
   }
 }
 
-TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
+TEST_F(PanelTest, TheEmergencyStopAlwaysSwitchesEnableOff) {
   rig::GpioSettings settings = all_lines();
   settings.keeps_enable_on_fault = true;
   make(settings);
@@ -225,7 +225,7 @@ TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
       << "the enable output must not wait for the control loop, which still reports the state idle";
 }
 
-TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
+TEST_F(PanelTest, AStalledLoopSwitchesEnableOffAndReportsLostInputs) {
   rig::GpioSettings settings = all_lines();
   settings.stale_after_s = 0.05;
   make(settings);
@@ -243,7 +243,7 @@ TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
   EXPECT_FALSE(shared_.inputs.lost.load());
 }
 
-TEST_F(PanelTest, ALostChipLosesTheInputs) {
+TEST_F(PanelTest, ALostChipReportsLostInputsAndOpensInterlock) {
   make(all_lines());
   make_ready();
   terminals_.fail();
@@ -256,7 +256,7 @@ TEST_F(PanelTest, ALostChipLosesTheInputs) {
   EXPECT_EQ(std::count(kinds.begin(), kinds.end(), PanelEvent::Kind::gpio_lost), 1);
 }
 
-TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
+TEST_F(PanelTest, ADroppedEnableOutputStaysOff) {
   make(all_lines());
   make_ready();
   panel_->drop();
@@ -287,7 +287,7 @@ class PipeLines final : public drivers::GpioLines {
   int descriptor_;
 };
 
-TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
+TEST(PanelGuard, ACrashSwitchesEnableOffAndKeepsTheSignal) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGQUIT}) {
     std::array<int, 2> pipe{};
     ASSERT_EQ(::pipe(pipe.data()), 0);
@@ -411,7 +411,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
   EXPECT_FALSE(terminals_.level(GpioRole::ready_lamp));
 }
 
-TEST_F(PanelOfDaemon, APartThatIsAwayRefusesAStart) {
+TEST_F(PanelOfDaemon, AMissingPartRefusesAStart) {
   start([](rig::RigFile& rig) {
     auto& lines = rig.gpio->lines;
     lines.erase(lines.begin());  // a rig without an emergency stop line starts without a fault
@@ -433,7 +433,7 @@ TEST_F(PanelOfDaemon, ALostChipIsAFaultThatCannotBeAcknowledged) {
   EXPECT_EQ(ask("acknowledge")["error"]["refusal"]["name"], "cause_persists");
 }
 
-TEST(PanelRun, LinesThatCannotBeHadEndTheStartWithTheirPlaceInTheRigFile) {
+TEST(PanelRun, AnUnavailableLineEndsTheStartWithFileAndLine) {
   for (const auto kind : {drivers::GpioFailure::Kind::refused, drivers::GpioFailure::Kind::failed}) {
     rig::RigFile rig = testing::example_rig("rig.yaml");
     rig.gpio = all_lines();
@@ -454,7 +454,7 @@ TEST(PanelRun, LinesThatCannotBeHadEndTheStartWithTheirPlaceInTheRigFile) {
   }
 }
 
-TEST(PanelRun, VirtualTimeHasNoDigitalLines) {
+TEST(PanelRun, VirtualTimeRefusesDigitalLines) {
   rig::RigFile rig = testing::example_rig("rig.yaml");
   rig.gpio = all_lines();
   DaemonOptions options;

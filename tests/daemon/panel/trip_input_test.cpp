@@ -22,7 +22,7 @@ TripInput cleared() {
   return input;
 }
 
-TEST(TripInput, IsTrippedUntilItWasSteadilyClear) {
+TEST(TripInput, IsTrippedUntilClearForTheDebounceTime) {
   TripInput input(debounce);
   EXPECT_TRUE(input.tripped());
   EXPECT_EQ(input.due(), 0) << "the level of the input must be read immediately";
@@ -36,7 +36,7 @@ TEST(TripInput, IsTrippedUntilItWasSteadilyClear) {
   EXPECT_GT(input.due(), 1'000'000 * ms) << "nothing is pending";
 }
 
-TEST(TripInput, StaysTrippedWhileItIsPressedAndAsksForNoAttention) {
+TEST(TripInput, StaysTrippedWhilePressedWithNothingPending) {
   TripInput input(debounce);
   for (int i = 0; i < 100; ++i) {
     input.level(true, i * ms);
@@ -55,7 +55,7 @@ TEST(TripInput, TripsWhenPressedForTheDebounceTime) {
   EXPECT_TRUE(input.tripped());
 }
 
-TEST(TripInput, IgnoresADisturbanceThatIsShorter) {
+TEST(TripInput, IgnoresAPressShorterThanTheDebounceTime) {
   TripInput input = cleared();
   input.edge(true, 20 * ms);
   input.edge(false, 24 * ms);
@@ -65,14 +65,14 @@ TEST(TripInput, IgnoresADisturbanceThatIsShorter) {
   }
 }
 
-TEST(TripInput, SeesAPressThatWasOverBeforeAnybodyLooked) {
+TEST(TripInput, DetectsAPressThatEndedBeforeTheReading) {
   TripInput input = cleared();
   input.edge(true, 20 * ms);
   input.edge(false, 26 * ms);
   EXPECT_TRUE(input.tripped()) << "according to the edge times of the kernel, the input was pressed for 6 ms";
 }
 
-TEST(TripInput, TripsOnAContactThatOnlyChatters) {
+TEST(TripInput, TripsOnAChatteringContact) {
   TripInput input = cleared();
   bool pressed = false;
   Nanoseconds now = 20 * ms;
@@ -86,21 +86,21 @@ TEST(TripInput, TripsOnAContactThatOnlyChatters) {
       << "the detection takes at most twice the debounce time plus one reading interval";
 }
 
-TEST(TripInput, NeedsNoEdges) {
+TEST(TripInput, TripsOnLevelsWithoutEdges) {
   TripInput input = cleared();
   input.level(true, 20 * ms);
   input.level(true, 25 * ms);
   EXPECT_TRUE(input.tripped());
 }
 
-TEST(TripInput, AnEdgeThatTheLevelToldAlreadyChangesNothing) {
+TEST(TripInput, AnEdgeOlderThanAKnownLevelChangesNothing) {
   TripInput input = cleared();
   input.level(true, 20 * ms);
   input.edge(true, 19 * ms);
   EXPECT_EQ(input.due(), 25 * ms);
 }
 
-TEST(TripInput, AnEdgeWithoutItsPartnerIsSuspect) {
+TEST(TripInput, AReleaseEdgeWithoutAPressEdgeDoesNotTrip) {
   TripInput input = cleared();
   input.edge(false, 20 * ms);  // simulates a release whose preceding edge to "pressed" was lost
   EXPECT_FALSE(input.tripped());
@@ -112,7 +112,7 @@ TEST(TripInput, AnEdgeWithoutItsPartnerIsSuspect) {
 /// Checks two statements of the header trip_input.h with random contact signals. A disturbance that is
 /// shorter than the debounce time never trips the input if the contact is quiet afterwards. If the contact
 /// does not become quiet, the input trips in time.
-TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
+TEST(TripInput, KeepsTheDebounceBoundsOnRandomContacts) {
   constexpr std::uint64_t seed = 20261120;
   std::mt19937_64 random(seed);
   SCOPED_TRACE(seed);

@@ -29,7 +29,7 @@ double parsed(const std::string& text) {
   return value;
 }
 
-TEST(CsvRow, WritesNumbersAsShortAsSixDecimalsAllow) {
+TEST(CsvRow, WritesNumbersWithAtMostSixDecimals) {
   EXPECT_EQ(decimal(0), "0");
   EXPECT_EQ(decimal(-0.0), "0");
   EXPECT_EQ(decimal(12), "12");
@@ -43,7 +43,7 @@ TEST(CsvRow, WritesNumbersAsShortAsSixDecimalsAllow) {
   EXPECT_EQ(decimal(100.000100), "100.0001");
 }
 
-TEST(CsvRow, LeavesACellEmptyForWhatIsNoNumber) {
+TEST(CsvRow, LeavesTheCellEmptyForNaNAndInfinity) {
   EXPECT_EQ(decimal(std::numeric_limits<double>::quiet_NaN()), "");
   EXPECT_EQ(decimal(std::numeric_limits<double>::infinity()), "");
 }
@@ -100,7 +100,7 @@ TEST(CsvRow, HasOneCellPerColumn) {
   }
 }
 
-TEST(CsvRow, ATemperatureHasAColumnWhereOneIsMeasured) {
+TEST(CsvRow, ATemperatureColumnExistsOnlyIfMeasured) {
   const CsvRows rows({"left"}, true, true);
   EXPECT_NE(rows.header().find(",pressure_kpa,temperature_c,reference_mm,"), std::string::npos);
   EXPECT_EQ(CsvRows({"left"}, true).header().find("temperature_c"), std::string::npos);
@@ -114,7 +114,7 @@ TEST(CsvRow, ATemperatureHasAColumnWhereOneIsMeasured) {
   EXPECT_EQ(text, "0,left,0,3.5,19.75,21.5,0,0,0,0,0,0,starting,0,valid,none,0,0\n");
 }
 
-TEST(CsvRow, AReadingThatIsNotValidLeavesItsCellEmpty) {
+TEST(CsvRow, AnInvalidReadingLeavesTheCellEmpty) {
   const CsvRows rows({"left"}, false);
   Record record;
   record.output.displacement_mm = 3.5;

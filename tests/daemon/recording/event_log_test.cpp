@@ -19,7 +19,7 @@ control::Event started() {
   return event;
 }
 
-TEST(EventLog, AStartIsToldWithWhatItWasAskedFor) {
+TEST(EventLog, AStartEventNamesSequenceAndParameters) {
   control::PreparedSequence sequence;
   sequence.name = "pick_stone";
   EXPECT_EQ(describe(started(), {}, &sequence).text, "The sequence 'pick_stone' begins.");
@@ -42,7 +42,7 @@ TEST(EventLog, ARefusedResetGivesTheNumberOfTheCause) {
   EXPECT_NE(entry.text.find("F202 reading_out_of_range"), std::string::npos) << entry.text;
 }
 
-TEST(EventLog, AnotherClientOfTheBoardIsAWarningWithTheirNumber) {
+TEST(EventLog, AnotherClientIsAWarningWithTheClientCount) {
   BusEvent event;
   event.kind = BusEvent::Kind::another_client;
   event.detail = {'2'};
@@ -52,7 +52,7 @@ TEST(EventLog, AnotherClientOfTheBoardIsAWarningWithTheirNumber) {
   EXPECT_NE(entry.text.find("has 2 clients"), std::string::npos) << entry.text;
 }
 
-TEST(EventLog, WhyNoSessionCanBeOpenedIsAnEventOfItsOwn) {
+TEST(EventLog, AFailedConnectionEventStatesTheReason) {
   BusEvent event;
   event.kind = BusEvent::Kind::not_connected;
   event.status = drivers::BusStatus::disconnected;
@@ -63,7 +63,7 @@ TEST(EventLog, WhyNoSessionCanBeOpenedIsAnEventOfItsOwn) {
   EXPECT_EQ(entry.text, "No session with the board can be opened: disconnected: gone.");
 }
 
-TEST(EventLog, IdsHaveNoGapsAndTheOldestGo) {
+TEST(EventLog, IdsAreConsecutiveAndTheOldestEntriesAreRemoved) {
   EventLog log(3);
   EXPECT_EQ(log.oldest(), 0U);
   EXPECT_TRUE(log.since(0, 10).empty());
@@ -82,7 +82,7 @@ TEST(EventLog, IdsHaveNoGapsAndTheOldestGo) {
   EXPECT_TRUE(ids(99, 10).empty());
 }
 
-TEST(EventLog, CountsOutliveTheEntriesAndDoNotGrowWithNames) {
+TEST(EventLog, CountsIncludeRemovedEntriesAndIgnoreSequenceNames) {
   EventLog log(2);
   EventEntry result;
   result.kind = "grip_result";
@@ -109,7 +109,7 @@ TEST(EventLog, CountsOutliveTheEntriesAndDoNotGrowWithNames) {
   EXPECT_EQ(counts[2].count, 3U);
 }
 
-TEST(RunJson, HoldsWhatTheSequenceRanWith) {
+TEST(RunJson, ContainsTheParametersOfTheSequence) {
   auto loaded = std::make_shared<LoadedSequence>();
   loaded->prepared.name = "pick_stone";
   loaded->prepared.parameters = {{"squeeze_kpa", 4}};

@@ -104,7 +104,7 @@ class RecorderTest : public ::testing::Test {
   Nanoseconds now_ = 50 * ns_per_s;
 };
 
-TEST_F(RecorderTest, RecordsASequenceFromItsStartToHalfASecondAfterItsMotion) {
+TEST_F(RecorderTest, ASequenceIsRecordedUntilHalfASecondAfterTheMotion) {
   ticks(200, State::idle);
   event(Event::Kind::sequence_started, {}, 7);
   ticks(100, State::running);
@@ -126,7 +126,7 @@ TEST_F(RecorderTest, RecordsASequenceFromItsStartToHalfASecondAfterItsMotion) {
   EXPECT_EQ(story["events"][0]["kind"], "sequence_started");
 }
 
-TEST_F(RecorderTest, AFaultAtRestHasItsLastSecondAttached) {
+TEST_F(RecorderTest, AFaultRecordingIncludesTheSecondBeforeTheFault) {
   ticks(300, State::idle);
   event(Event::Kind::fault_latched, control::FaultCode::bus_down);
   ticks(200, State::faulted);
@@ -139,7 +139,7 @@ TEST_F(RecorderTest, AFaultAtRestHasItsLastSecondAttached) {
   EXPECT_EQ(lines(folders().front())[1].substr(0, 7), "0,left,");
 }
 
-TEST_F(RecorderTest, AFaultDuringASequenceStaysInItsRecording) {
+TEST_F(RecorderTest, AFaultDuringASequenceIsInTheSequenceRecording) {
   event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
   event(Event::Kind::fault_latched, control::FaultCode::reading_jumped);
@@ -149,7 +149,7 @@ TEST_F(RecorderTest, AFaultDuringASequenceStaysInItsRecording) {
   EXPECT_EQ(json(folders().front())["faults"][0]["code"], "F204");
 }
 
-TEST_F(RecorderTest, AStartSoonAfterARunGetsARecordingOfItsOwn) {
+TEST_F(RecorderTest, AStartShortlyAfterARunGetsASeparateRecording) {
   for (int run = 0; run < 2; ++run) {
     event(Event::Kind::sequence_started, {}, 7);
     ticks(10, State::running);
@@ -160,7 +160,7 @@ TEST_F(RecorderTest, AStartSoonAfterARunGetsARecordingOfItsOwn) {
   EXPECT_EQ(json("run-0001_pick_stone")["rows"], 40);
 }
 
-TEST_F(RecorderTest, AlwaysIsOneRecordingFromStartToStop) {
+TEST_F(RecorderTest, ModeAlwaysWritesOneRecordingFromStartToStop) {
   settings_.mode = rig::RecorderSettings::Mode::always;
   ticks(10, State::starting);
   ticks(100, State::idle);
@@ -172,7 +172,7 @@ TEST_F(RecorderTest, AlwaysIsOneRecordingFromStartToStop) {
   EXPECT_EQ(json(folders().front())["sequence"]["name"], "pick stone");
 }
 
-TEST_F(RecorderTest, OffRecordsNothing) {
+TEST_F(RecorderTest, ModeOffRecordsNothing) {
   settings_.mode = rig::RecorderSettings::Mode::off;
   event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
@@ -199,7 +199,7 @@ TEST_F(RecorderTest, DroppedRowsAreCounted) {
   EXPECT_EQ(recorder().status().dropped_rows, 12U);
 }
 
-TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
+TEST_F(RecorderTest, AFullDiskEndsTheRecordingWithAnErrorEvent) {
   provenance_.virtual_time = false;  // use real time, so that every drain() writes to the file
   void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
@@ -224,7 +224,7 @@ TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
   EXPECT_FALSE(recorder().status().error.empty());
 }
 
-TEST_F(RecorderTest, TriesAgainWithTheNextSequenceAMinuteAfterTheDiskRefused) {
+TEST_F(RecorderTest, ANewRecordingStartsAMinuteAfterAWriteFailure) {
   settings_.directory = "/proc/softgrip";
   event(Event::Kind::sequence_started, {}, 7);
   ticks(10, State::running);
@@ -237,13 +237,13 @@ TEST_F(RecorderTest, TriesAgainWithTheNextSequenceAMinuteAfterTheDiskRefused) {
   EXPECT_EQ(folders().size(), 1U);
 }
 
-TEST_F(RecorderTest, RunJsonIsThereFromTheFirstRowOn) {
+TEST_F(RecorderTest, RunJsonExistsFromTheFirstRow) {
   event(Event::Kind::sequence_started, {}, 7);
   ticks(1, State::running);
   EXPECT_EQ(json(folders().front())["state"], "recording");
 }
 
-TEST_F(RecorderTest, BytesThatAreNoUtf8DoNotMakeRunJsonUnreadable) {
+TEST_F(RecorderTest, InvalidUtf8KeepsRunJsonReadable) {
   provenance_.rig = "bench \xff";
   settings_.mode = rig::RecorderSettings::Mode::always;
   ticks(1, State::idle);

@@ -42,7 +42,7 @@ std::size_t files_in(const std::string& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-TEST(RunFolder, CreatesItsFolderAndTheFirstLine) {
+TEST(RunFolder, CreatesTheFolderAndTheHeaderLine) {
   const TemporaryFolder temporary;
   const auto folder = RunFolder::create(temporary.path() + "/a/b", "time_s\n", true);
   ASSERT_TRUE(folder) << folder.error();
@@ -58,13 +58,13 @@ TEST(RunFolder, NeverOverwritesARecording) {
   EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "first\n");
 }
 
-TEST(RunFolder, SaysWhyItCannotBegin) {
+TEST(RunFolder, AFailedCreationNamesThePath) {
   const auto folder = RunFolder::create("/proc/softgrip", "time_s\n", true);
   ASSERT_FALSE(folder);
   EXPECT_NE(folder.error().find("/proc/softgrip"), std::string::npos);
 }
 
-TEST(RunFolder, AFullDiskCutsTheFileAtAWholeLineAndIsRemembered) {
+TEST(RunFolder, AFullDiskLeavesWholeLinesAndAPermanentError) {
   const TemporaryFolder temporary;
   auto folder = RunFolder::create(temporary.path(), "header\n", true);
   ASSERT_TRUE(folder);
@@ -80,7 +80,7 @@ TEST(RunFolder, AFullDiskCutsTheFileAtAWholeLineAndIsRemembered) {
   EXPECT_TRUE(folder->replace_json("{}"));
 }
 
-TEST(RunFolder, ALinkThatSomebodyLaidIsNeverWrittenThrough) {
+TEST(RunFolder, SymbolicLinksAreNeverFollowedOnWriting) {
   namespace fs = std::filesystem;
   const TemporaryFolder temporary;
   const std::string victim = temporary.path() + "/victim";
@@ -100,7 +100,7 @@ TEST(RunFolder, ALinkThatSomebodyLaidIsNeverWrittenThrough) {
   EXPECT_EQ(text_of(victim), "mine");
 }
 
-TEST(RunFolder, RunJsonIsTheOldOneOrTheNewOne) {
+TEST(RunFolder, AFailedReplacementKeepsTheOldRunJson) {
   const TemporaryFolder temporary;
   auto folder = RunFolder::create(temporary.path(), "header\n", true);
   ASSERT_TRUE(folder);

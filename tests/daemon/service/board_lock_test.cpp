@@ -31,7 +31,7 @@ rig::RigFile rig_at(const std::string& host, std::uint16_t port, std::uint8_t un
   return rig;
 }
 
-TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
+TEST(BoardLock, ABoardHasOneLockForAllNotationsOfTheAddress) {
   auto first = BoardLock::take(rig_at("::1", 40502));
   ASSERT_TRUE(first) << first.error();
   const auto second = BoardLock::take(rig_at("0:0::1", 40502));
@@ -45,14 +45,14 @@ TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
   EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "the lock must be free after its holder has ended";
 }
 
-TEST(BoardLock, AnAddressWithinTheOtherFamilyIsTheSameBoard) {
+TEST(BoardLock, AnIpv4MappedIpv6AddressIsTheSameBoard) {
   const auto first = BoardLock::take(rig_at("127.0.0.1", 40502));
   ASSERT_TRUE(first) << first.error();
   EXPECT_FALSE(BoardLock::take(rig_at("::ffff:127.0.0.1", 40502)));
   EXPECT_FALSE(BoardLock::take(rig_at("::FFFF:7f00:1", 40502)));
 }
 
-TEST(BoardLock, ASerialLineHasOneMasterWhateverUnitItAsks) {
+TEST(BoardLock, ASerialLineHasOneLockForAllUnits) {
   rig::RigFile one = rig_at("", 0, 1);
   rig::RigFile two = rig_at("", 0, 2);
   const auto device = [](rig::RigFile& rig) -> std::string& {
@@ -67,7 +67,7 @@ TEST(BoardLock, ASerialLineHasOneMasterWhateverUnitItAsks) {
   EXPECT_FALSE(BoardLock::take(two));
 }
 
-TEST(BoardLock, AConverterIsOneBoardUnderAllItsWords) {
+TEST(BoardLock, AConverterHasOneLockForAllNames) {
   const ScratchFolder scratch;
   const std::filesystem::path root = std::filesystem::canonical(scratch.path());
   for (const char* const address : {"1-0060", "1-0061"}) {
@@ -151,7 +151,7 @@ std::function<bool()> another_user_on(const std::string& board, int backlog) {
   };
 }
 
-TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
+TEST(BoardLock, ALockOfAnUntrustedUserIsIgnoredWithARemark) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can run this test as another user";
   const rig::RigFile rig = rig_at("127.0.0.1", 40511);
   for (const int backlog : {-1, 0, 5}) {
@@ -166,7 +166,7 @@ TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
   }
 }
 
-TEST(BoardLock, AFileThatSomebodyRemovedKeepsOthersOffAllTheSame) {
+TEST(BoardLock, ARemovedLockFileStillExcludesOtherPrograms) {
   const rig::RigFile rig = rig_at("127.0.0.1", 40512);
   const Holder holder(a_program_on(rig));
   const auto folder = RuntimeFolder::open();
@@ -180,7 +180,7 @@ TEST(BoardLock, AFileThatSomebodyRemovedKeepsOthersOffAllTheSame) {
       << second.error();
 }
 
-TEST(BoardLock, IsLetGoByAKilledProcessAndLeavesNoFile) {
+TEST(BoardLock, IsReleasedByAKilledProcessAndLeavesNoFile) {
   const rig::RigFile rig = rig_at("127.0.0.1", 40513);
   { const Holder killed(a_program_on(rig)); }
   const std::string name = "board-" + sha256("modbus 127.0.0.1 port 40513 unit 1") + ".lock";
@@ -195,7 +195,7 @@ TEST(BoardLock, IsLetGoByAKilledProcessAndLeavesNoFile) {
   EXPECT_FALSE(std::filesystem::exists(folder->path() + "/" + name));
 }
 
-TEST(BoardLock, SafeOutputsYieldToAProgramThatRunsAndNotToOneThatStandsStill) {
+TEST(BoardLock, VentingOverridesOnlyTheLockOfAStoppedProcess) {
   const rig::RigFile rig = rig_at("127.0.0.1", 40514);
   const Holder holder(a_program_on(rig));
   EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
@@ -208,7 +208,7 @@ TEST(BoardLock, SafeOutputsYieldToAProgramThatRunsAndNotToOneThatStandsStill) {
   EXPECT_NE(lock->remarks()[0].find("does not run"), std::string::npos) << lock->remarks()[0];
 }
 
-TEST(BoardLock, NothingIsDrivenByASimulatedBoardNorByAModuleOfInputs) {
+TEST(BoardLock, SimulatedBoardsAndInputModulesDriveNoBoard) {
   rig::RigFile simulated;
   simulated.board = simulation::SimulatedBoardSettings{};
   EXPECT_TRUE(driven_by(simulated).empty());

@@ -14,7 +14,7 @@
 namespace softgrip::daemon::daemon_test {
 namespace {
 
-TEST(Daemon, VirtualTimeNeedsAnEnd) {
+TEST(Daemon, VirtualTimeRequiresAnEndOfTheRun) {
   DaemonOptions options;
   options.virtual_time = true;
   const auto daemon = Daemon::create(testing::example_rig("rig.yaml"), options);
@@ -50,7 +50,7 @@ TEST(Daemon, RunsASequenceAndReportsItsResult) {
   EXPECT_NE(std::find(kinds.begin(), kinds.end(), "sequence_finished"), kinds.end());
 }
 
-TEST(Daemon, APressureLeftOnIsOneThatIsUnderPressure) {
+TEST(Daemon, ReportsRemainingPressureFor5KpaAndNotFor50Pa) {
   for (const auto& [kpa, on] : {std::pair{"0.05", false}, {"5", true}}) {
     rig::RigFile rig = testing::example_rig("rig.yaml");
     rig.recorder.mode = rig::RecorderSettings::Mode::off;
@@ -73,7 +73,7 @@ TEST(Daemon, APressureLeftOnIsOneThatIsUnderPressure) {
   }
 }
 
-TEST(Daemon, AnExceptionOfTheCallersOwnStillEndsWithSafeOutputs) {
+TEST(Daemon, AnExceptionInACallbackEndsWithSafeOutputs) {
   const testing::TemporaryFolder folder;
   rig::RigFile rig = testing::example_rig("rig.yaml");
   rig.recorder.mode = rig::RecorderSettings::Mode::off;

@@ -20,7 +20,7 @@ rig::RigFile with_line(const std::string& chip) {
   return rig;
 }
 
-TEST(NamedDevice, AChipThatTheRigNamesAndNoOther) {
+TEST(NamedDevice, FindsOnlyTheChipThatTheRigNames) {
   const rig::RigFile rig = with_line("gpiochip1");
   EXPECT_TRUE(named_device(rig, "gpiochip1"));
   EXPECT_FALSE(named_device(rig, "gpiochip0"));
@@ -28,7 +28,7 @@ TEST(NamedDevice, AChipThatTheRigNamesAndNoOther) {
   EXPECT_FALSE(named_device(rig::RigFile{}, "gpiochip1")) << "a rig without digital lines uses no chip";
 }
 
-TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten) {
+TEST(NamedDevice, FindsAConverterAndTheWrittenOutputAttributes) {
   const testing::TemporaryFolder root;
   for (const auto& [device, name] :
        {std::pair{"iio:device0", "ads1115"}, {"iio:device1", "dac7578"}, {"iio:device2", "other"}}) {
@@ -56,7 +56,7 @@ TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten)
   EXPECT_FALSE(named_device(rig, "iio:device1")) << "the name of two converters is ambiguous";
 }
 
-TEST(NamedDevice, OtherDevicesAreNone) {
+TEST(NamedDevice, RefusesOtherDevicesAndEmptyNames) {
   EXPECT_FALSE(named_device(with_line("mem"), "mem"));
   EXPECT_FALSE(named_device(with_line(""), ""));
 }

@@ -32,7 +32,7 @@ class RuntimeFolderTest : public ::testing::Test {
   std::string place_;
 };
 
-TEST_F(RuntimeFolderTest, WhatItMakesIsItsOwnersAlone) {
+TEST_F(RuntimeFolderTest, CreatedFilesAreAccessibleOnlyToTheOwner) {
   const RuntimeFolder mine = folder();
   EXPECT_EQ(mine.path(), place_);
   EXPECT_EQ(mode_of(place_), 0700U);
@@ -42,7 +42,7 @@ TEST_F(RuntimeFolderTest, WhatItMakesIsItsOwnersAlone) {
   EXPECT_EQ(mode_of(place_ + "/b.json"), 0600U);
 }
 
-TEST_F(RuntimeFolderTest, APlaceThatOthersCanChangeIsPassedOver) {
+TEST_F(RuntimeFolderTest, AFolderWritableByOthersIsSkipped) {
   fs::create_directory(place_);
   const std::string better = parent_.path() + "/better";
   for (const mode_t mode : {0777U, 0770U, 0722U}) {
@@ -54,7 +54,7 @@ TEST_F(RuntimeFolderTest, APlaceThatOthersCanChangeIsPassedOver) {
   }
 }
 
-TEST_F(RuntimeFolderTest, AnotherUsersPlaceIsPassedOver) {
+TEST_F(RuntimeFolderTest, AFolderOfAnotherUserIsRefused) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can change the owner of a folder";
   fs::create_directory(place_);
   ASSERT_EQ(::chown(place_.c_str(), 65534, 65534), 0);
@@ -63,13 +63,13 @@ TEST_F(RuntimeFolderTest, AnotherUsersPlaceIsPassedOver) {
   EXPECT_NE(opened.error().find("belongs to user 65534"), std::string::npos) << opened.error();
 }
 
-TEST_F(RuntimeFolderTest, ALinkIsNoPlace) {
+TEST_F(RuntimeFolderTest, ASymbolicLinkIsRefusedAsAFolder) {
   fs::create_directory(parent_.path() + "/elsewhere");
   fs::create_directory_symlink(parent_.path() + "/elsewhere", place_);
   EXPECT_FALSE(RuntimeFolder::open({place_}));
 }
 
-TEST_F(RuntimeFolderTest, AFileThatIsNotItsOwnIsRefusedAndStays) {
+TEST_F(RuntimeFolderTest, UnsafeFilesAreRefusedAndLinkTargetsKept) {
   const RuntimeFolder mine = folder();
   const std::string victim = parent_.path() + "/victim";
   std::ofstream(victim) << "precious";
@@ -90,7 +90,7 @@ TEST_F(RuntimeFolderTest, AFileThatIsNotItsOwnIsRefusedAndStays) {
   EXPECT_EQ(text, "precious");
 }
 
-TEST_F(RuntimeFolderTest, PutsAWholeFileOrNone) {
+TEST_F(RuntimeFolderTest, PutReplacesTheFileAndLeavesNoTemporaryFile) {
   const RuntimeFolder mine = folder();
   const std::string long_text(1'000'000, 'x');
   ASSERT_TRUE(mine.put("file", "old"));
@@ -102,7 +102,7 @@ TEST_F(RuntimeFolderTest, PutsAWholeFileOrNone) {
   EXPECT_TRUE(fs::is_empty(place_)) << "no temporary file remains";
 }
 
-TEST_F(RuntimeFolderTest, KnowsWhetherANameIsStillTheFile) {
+TEST_F(RuntimeFolderTest, StillNamesDetectsARemovedOrReplacedFile) {
   const RuntimeFolder mine = folder();
   const auto file = mine.lock_file("a");
   ASSERT_TRUE(file) << file.error();
@@ -113,7 +113,7 @@ TEST_F(RuntimeFolderTest, KnowsWhetherANameIsStillTheFile) {
   EXPECT_FALSE(mine.still_names("a", file->get())) << "the file name now refers to another file";
 }
 
-TEST_F(RuntimeFolderTest, OnlyFoldersInRunEndWithTheMachine) {
+TEST_F(RuntimeFolderTest, AFolderOutsideRunDoesNotEndWithTheMachine) {
   EXPECT_FALSE(folder().ends_with_the_machine());
 }
 
@@ -144,7 +144,7 @@ class KeptRig : public ::testing::Test {
   std::string path_ = folder_.path() + "/config/rig_tcp.yaml";
 };
 
-TEST_F(KeptRig, IsTheRigThatRanWhateverBecameOfTheFiles) {
+TEST_F(KeptRig, EqualsTheRunRigAfterTheFilesAreDamaged) {
   const rig::RigFile rig = load(path_);
   const auto kept = keep_rig(rig);
   ASSERT_TRUE(kept) << kept.error();
@@ -167,7 +167,7 @@ TEST_F(KeptRig, IsTheRigThatRanWhateverBecameOfTheFiles) {
   for (std::size_t i = 0; i < rig.inputs.size(); ++i) EXPECT_EQ(again->inputs[i].text, rig.inputs[i].text);
 }
 
-TEST_F(KeptRig, TheLastRunCounts) {
+TEST_F(KeptRig, TheLastRunReplacesTheKeptRig) {
   ASSERT_TRUE(keep_rig(load(path_)));
   std::string text = testing::text_of(path_);
   const std::size_t at = text.find("\nname: ");
@@ -178,7 +178,7 @@ TEST_F(KeptRig, TheLastRunCounts) {
   EXPECT_TRUE(kept_rig(path_)->name.starts_with("later_"));
 }
 
-TEST_F(KeptRig, BelongsToItsRigFile) {
+TEST_F(KeptRig, IsFoundOnlyByTheSameRigFile) {
   ASSERT_TRUE(keep_rig(load(path_)));
   EXPECT_TRUE(kept_rig(folder_.path() + "/config/../config/./rig_tcp.yaml"))
       << "a different notation of the path refers to the same rig file";
@@ -187,13 +187,13 @@ TEST_F(KeptRig, BelongsToItsRigFile) {
   EXPECT_FALSE(kept_rig(path_));
 }
 
-TEST_F(KeptRig, NothingIsKeptWhereNoBoardIsDriven) {
+TEST_F(KeptRig, ASimulatedRigIsNotKept) {
   const std::string simulated = folder_.path() + "/config/rig.yaml";
   ASSERT_TRUE(keep_rig(load(simulated)));
   EXPECT_FALSE(kept_rig(simulated));
 }
 
-TEST_F(KeptRig, ADamagedOneIsNone) {
+TEST_F(KeptRig, ADamagedKeptRigIsNotReturned) {
   ASSERT_TRUE(keep_rig(load(path_)));
   const auto place = RuntimeFolder::open();
   ASSERT_TRUE(place);

@@ -61,7 +61,7 @@ TEST_F(SafeOutputsTest, WritesTheLowestPressureOfEachChannelAndNothingElse) {
   for (const auto& written : board_.written) EXPECT_EQ(written, (std::vector<double>{0, 2}));
 }
 
-TEST_F(SafeOutputsTest, WritesRestWhereThatIsNotTheLowestPressure) {
+TEST_F(SafeOutputsTest, WritesTheRestPressureOnAVacuumChannel) {
   rig_.settings.channels[0].limits = {-40, 60};
   rig_.settings.channels[1].limits = {-40, 60};
   rig_.settings.channels[1].limits.rest_kpa = -10;
@@ -77,7 +77,7 @@ TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
                                                   // exchanges without a response
 }
 
-TEST_F(SafeOutputsTest, ABoardThatStaysSilentIsNotConfirmed) {
+TEST_F(SafeOutputsTest, ABoardWithoutResponseIsReportedAsSilent) {
   board_.next_connect = BusStatus::disconnected;
   const SafeOutputsReport report = write(board_, std::chrono::milliseconds(20));
   EXPECT_EQ(report.end, SafeOutputsEnd::board_silent);
@@ -85,12 +85,12 @@ TEST_F(SafeOutputsTest, ABoardThatStaysSilentIsNotConfirmed) {
   EXPECT_TRUE(board_.written.empty());
 }
 
-TEST_F(SafeOutputsTest, ATrippedWatchdogOfTheBoardIsSafeEnough) {
+TEST_F(SafeOutputsTest, ATrippedBoardWatchdogCountsAsSafe) {
   board_.next_exchange = BusStatus::watchdog_tripped;
   EXPECT_EQ(write(board_).end, SafeOutputsEnd::board_holds);
 }
 
-TEST_F(SafeOutputsTest, AfterAnOrderlyEndTheOutputsStay) {
+TEST_F(SafeOutputsTest, SafeOutputsAreNotNeededAfterASuccessfulExit) {
   EXPECT_FALSE(safe_outputs_needed("success"));
   for (const char* result : {"", "exit-code", "signal", "core-dump", "watchdog", "timeout"})
     EXPECT_TRUE(safe_outputs_needed(result)) << result;

@@ -21,7 +21,7 @@ int status_of(const std::function<bool()>& body) {
   return status;
 }
 
-TEST(Signals, TheFirstOneIsKnownAndIsTheOneToEndBy) {
+TEST(Signals, TheFirstSignalIsReportedAsTheEndingSignal) {
   EXPECT_EQ(status_of([] {
               Signals signals;
               if (signals.first() != 0) return false;
@@ -33,7 +33,7 @@ TEST(Signals, TheFirstOneIsKnownAndIsTheOneToEndBy) {
             0);
 }
 
-TEST(Signals, AfterAnAnsweredOneTheOthersDoNotEndTheProcess) {
+TEST(Signals, AfterAHandledSignalOthersDoNotEndTheProcess) {
   EXPECT_EQ(status_of([] {
               {
                 Signals signals;
@@ -47,7 +47,7 @@ TEST(Signals, AfterAnAnsweredOneTheOthersDoNotEndTheProcess) {
             0);
 }
 
-TEST(Signals, OneThatWasNeverTakenGoesToAnOuterObject) {
+TEST(Signals, AnUnhandledSignalIsPassedToTheOuterObject) {
   EXPECT_EQ(status_of([] {
               Signals outer;
               {
@@ -59,7 +59,7 @@ TEST(Signals, OneThatWasNeverTakenGoesToAnOuterObject) {
             0);
 }
 
-TEST(Signals, OneThatWasNeverTakenEndsTheProcess) {
+TEST(Signals, AnUnhandledSignalEndsTheProcess) {
   const int status = status_of([] {
     {
       const Signals signals;

@@ -47,7 +47,7 @@ class SocketSession : public ::testing::Test {
   ApiClient client_;
 };
 
-TEST_F(SocketSession, AGripFromStartToVent) {
+TEST_F(SocketSession, AGripCanBeStartedObservedAndVented) {
   const json start = ask({{"id", 1}, {"command", "start"}, {"sequence", "pick_stone.yaml"}});
   EXPECT_EQ(start["id"], 1);
   ASSERT_EQ(start["ok"], true) << start;
@@ -79,7 +79,7 @@ TEST_F(SocketSession, AGripFromStartToVent) {
   for (const json& event : later) EXPECT_GT(event["id"].get<std::uint64_t>(), newest);
 }
 
-TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
+TEST_F(SocketSession, ANamedStopEndsOnlyTheNamedStart) {
   const auto start = [&](const char* id) {
     return ask({{"command", "start"}, {"sequence", "pick_stone"}, {"start_id", id}});
   };
@@ -108,7 +108,7 @@ TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
   EXPECT_EQ(stop_of("request", second["result"]["request"])["ok"], true);
 }
 
-TEST_F(SocketSession, AStartThatAStopHasNamedBeforeItCameDoesNotBegin) {
+TEST_F(SocketSession, ANamedStopPreventsAStartThatArrivesLater) {
   EXPECT_EQ(ask({{"command", "stop"}, {"start_id", "late"}})["error"]["refusal"]["code"], "R12");
   const json late = ask({{"command", "start"}, {"sequence", "pick_stone"}, {"start_id", "late"}});
   EXPECT_EQ(late["error"]["code"], "abandoned");
@@ -126,7 +126,7 @@ TEST_F(SocketSession, AStartThatAStopHasNamedBeforeItCameDoesNotBegin) {
   }
 }
 
-TEST_F(SocketSession, AStopOfAClientThatHasGoneIsHeardWhenAPausedDaemonGoesOn) {
+TEST_F(SocketSession, APausedDaemonExecutesTheStopOfALostClient) {
   const auto line = [](const char* command, const std::string& rest) {
     return std::string(R"({"command":")") + command + "\"" + rest + ",\"start_id\":\"x\"}\n";
   };
@@ -146,12 +146,12 @@ TEST_F(SocketSession, AStopOfAClientThatHasGoneIsHeardWhenAPausedDaemonGoesOn) {
   EXPECT_EQ(status()["sequence"]["ended"], "stopped");
 }
 
-TEST_F(SocketSession, RequestsThatTheStateDoesNotAllowAreRefusedWithTheirReason) {
+TEST_F(SocketSession, InadmissibleRequestsAreRefusedWithTheReason) {
   EXPECT_EQ(ask({{"command", "stop"}})["error"]["refusal"]["name"], "nothing_to_stop");
   EXPECT_EQ(ask({{"command", "acknowledge"}})["error"]["refusal"]["name"], "nothing_to_acknowledge");
 }
 
-TEST_F(SocketSession, ASequenceThatCannotRunIsRefusedWithAllItsProblems) {
+TEST_F(SocketSession, AnInvalidSequenceIsRefusedWithFileAndLine) {
   const json reply =
       ask({{"command", "start"},
            {"sequence", "mine"},
@@ -181,7 +181,7 @@ TEST_F(SocketSession, TheSequencesAreListedWithTheirParameters) {
   EXPECT_TRUE(seen) << list;
 }
 
-TEST_F(SocketSession, AStartChoosesParameters) {
+TEST_F(SocketSession, AStartSetsSequenceParameters) {
   const auto start = [&](const json& parameters) {
     return ask({{"command", "start"}, {"sequence", "pick_stone"}, {"parameters", parameters}});
   };
@@ -192,7 +192,7 @@ TEST_F(SocketSession, AStartChoosesParameters) {
   EXPECT_EQ(status()["sequence"]["parameters"]["squeeze_kpa"], 4.0);
 }
 
-TEST_F(SocketSession, ASequenceMayComeAsText) {
+TEST_F(SocketSession, ASequenceCanBeSentAsText) {
   const json reply =
       ask({{"command", "start"},
            {"sequence", "inline.yaml"},
@@ -201,7 +201,7 @@ TEST_F(SocketSession, ASequenceMayComeAsText) {
   EXPECT_TRUE(until_state("running"));
 }
 
-TEST_F(SocketSession, WatchStreamsAtTheRateThatWasAskedFor) {
+TEST_F(SocketSession, WatchStreamsNearTheRequestedRate) {
   ASSERT_EQ(ask({{"id", 9}, {"command", "watch"}, {"rate_hz", 20}})["ok"], true);
   std::vector<double> times;
   for (int i = 0; i < 20; ++i) {
@@ -215,7 +215,7 @@ TEST_F(SocketSession, WatchStreamsAtTheRateThatWasAskedFor) {
   EXPECT_LT(period_s, 0.5) << "the loop may be slow on a loaded machine, but it must continue";
 }
 
-TEST_F(SocketSession, StatisticsHaveTheirHistogramsOnRequest) {
+TEST_F(SocketSession, StatisticsContainHistogramsOnRequest) {
   const json plain = ask({{"command", "statistics"}})["result"];
   EXPECT_GT(plain["loop"]["ticks"], 0);
   EXPECT_FALSE(plain["loop"]["wake_up"].contains("bins_us"));
@@ -225,7 +225,7 @@ TEST_F(SocketSession, StatisticsHaveTheirHistogramsOnRequest) {
   EXPECT_NEAR(static_cast<double>(sum), full["loop"]["wake_up"]["count"].get<double>(), 5);
 }
 
-TEST_F(SocketSession, HostileClientsDisturbNobody) {
+TEST_F(SocketSession, HostileClientsDoNotDisturbOtherClients) {
   const unsigned seed = 99;
   SCOPED_TRACE(seed);
   const auto ticks_before = status()["loop"]["ticks"].get<std::uint64_t>();

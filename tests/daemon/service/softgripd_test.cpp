@@ -159,7 +159,7 @@ TEST_F(SoftgripdTest, AKilledDaemonLosesLessThanASecondOfItsRecording) {
   EXPECT_FALSE(story["events"].empty());
 }
 
-TEST_F(SoftgripdTest, ADaemonAfterAKilledOneTakesItsPlace) {
+TEST_F(SoftgripdTest, ADaemonReplacesTheSocketOfAKilledDaemon) {
   const std::string rig = make_rig(folder_.path());
   {
     SoftgripdProcess killed(folder_.path(), {.arguments = {"--config", rig}});
@@ -221,7 +221,7 @@ TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
   if (mounted) umount(disk.c_str());
 }
 
-TEST_F(SoftgripdTest, EndsWithItsSequenceAndSaysHowItWent) {
+TEST_F(SoftgripdTest, EndsWithTheSequenceAndReportsTheResult) {
   const std::string rig = make_rig(folder_.path());
   SoftgripdProcess done(folder_.path(), {.arguments = {"--config", rig, "--virtual-time", "--sequence",
                                                        sequences + "pick_stone.yaml"}});
@@ -258,7 +258,7 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
   EXPECT_EQ(code({"--config", broken}), 3);
 }
 
-TEST_F(SoftgripdTest, RefusesANameOfTwoConvertersBeforeAnythingMoves) {
+TEST_F(SoftgripdTest, RefusesAnAmbiguousConverterNameWithoutWriting) {
   const std::filesystem::path root = folder_.path() + "/iio";
   for (const auto& [node, name] :
        {std::pair{"iio:device0", "mcp4725"}, {"iio:device1", "mcp4725"}, {"iio:device2", "ads1115"}}) {
@@ -287,7 +287,7 @@ TEST_F(SoftgripdTest, RefusesANameOfTwoConvertersBeforeAnythingMoves) {
     EXPECT_EQ(text_of((root / node / "out_voltage0_raw").string()), "1234\n") << node;
 }
 
-TEST_F(SoftgripdTest, RealTimeThatIsRequiredAndNotThereIsARefusal) {
+TEST_F(SoftgripdTest, RefusesARunIfRequiredRealTimeIsUnavailable) {
   const std::string rig =
       make_rig(folder_.path(),
                {{"required: false, priority: 70, cpus: []", "required: true, priority: 70, cpus: [1000]"}});
@@ -326,7 +326,7 @@ class NotifySocket {
   Descriptor socket_;
 };
 
-TEST_F(SoftgripdTest, TellsTheServiceManagerWhenItIsReadyAliveAndStopping) {
+TEST_F(SoftgripdTest, NotifiesTheServiceManagerOfReadyAliveAndStopping) {
   const std::string path = folder_.path() + "/notify";
   NotifySocket manager(path);
   SoftgripdProcess process(folder_.path(),

@@ -23,7 +23,7 @@ namespace {
 
 constexpr uid_t nobody = 65534;
 
-TEST(TrustedUser, RootAndThisUserAreTrustedAndNobodyElse) {
+TEST(TrustedUser, OnlyRootAndThisUserAreTrusted) {
   EXPECT_TRUE(is_trusted(0));
   EXPECT_TRUE(is_trusted(::geteuid()));
   EXPECT_FALSE(is_trusted(nobody));
@@ -57,14 +57,14 @@ std::optional<Peer> peer_as(uid_t user) {
   return peer;
 }
 
-TEST(TrustedUser, APeerOfThisUserCounts) {
+TEST(TrustedUser, APeerOfThisUserIsTrusted) {
   const auto peer = peer_as(::geteuid());
   ASSERT_TRUE(peer);
   EXPECT_EQ(peer->user, ::geteuid());
   EXPECT_TRUE(peer->trusted);
 }
 
-TEST(TrustedUser, APeerOfAnotherUserDoesNotCount) {
+TEST(TrustedUser, APeerOfAnotherUserIsNotTrusted) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can run this test as another user";
   const auto peer = peer_as(nobody);
   ASSERT_TRUE(peer);
@@ -72,7 +72,7 @@ TEST(TrustedUser, APeerOfAnotherUserDoesNotCount) {
   EXPECT_FALSE(peer->trusted);
 }
 
-TEST(TrustedUser, WhatIsNoSocketHasNoPeer) {
+TEST(TrustedUser, AnInvalidDescriptorHasNoPeer) {
   EXPECT_FALSE(peer_of(-1));
 }
 
@@ -121,19 +121,19 @@ class DaemonAnswers : public ::testing::Test {
   std::string path_ = folder_.path() + "/socket";
 };
 
-TEST_F(DaemonAnswers, AReplyOfTheSocketApi) {
+TEST_F(DaemonAnswers, AReplyOfTheSocketApiIsRecognised) {
   EXPECT_TRUE(with_reply("{\"ok\": true, \"result\": {}}\n"));
   EXPECT_TRUE(with_reply("{\"ok\": false, \"error\": {\"code\": \"busy\"}}\nmore"));
 }
 
-TEST_F(DaemonAnswers, AnotherProgramIsNoDaemon) {
+TEST_F(DaemonAnswers, RepliesOfAnotherProgramAreNotRecognised) {
   EXPECT_FALSE(with_reply("HTTP/1.1 400 Bad Request\r\n"));
   EXPECT_FALSE(with_reply("{}\n"));
   EXPECT_FALSE(with_reply("[\"ok\"]\n"));
   EXPECT_FALSE(with_reply("{\"ok\": tr")) << "the connection ended after half a line";
 }
 
-TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {
+TEST_F(DaemonAnswers, ASilentListenerIsNotRecognised) {
   rig::SocketFile file;
   file.path = path_;
   const auto listener = Listener::open(file);  // this listener accepts no connection, but the kernel does
@@ -141,7 +141,7 @@ TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {
   EXPECT_FALSE(daemon_answers(path_));
 }
 
-TEST_F(DaemonAnswers, NobodyIsNoDaemon) {
+TEST_F(DaemonAnswers, AMissingSocketIsNotRecognised) {
   EXPECT_FALSE(daemon_answers(path_));
   EXPECT_FALSE(daemon_answers(""));
   EXPECT_FALSE(daemon_answers(std::string(200, 'x')));

@@ -78,7 +78,7 @@ TEST(ClientRequest, ReadsArguments) {
   EXPECT_EQ(events->limit, 100U);
 }
 
-TEST(ClientRequest, SaysWhatIsWrong) {
+TEST(ClientRequest, EveryInvalidRequestIsRefusedWithTheReason) {
   const std::vector<std::pair<std::string, std::string>> lines{
       {"", "not a JSON object"},
       {"status", "not a JSON object"},
@@ -134,7 +134,7 @@ TEST(ClientRequest, SaysWhatIsWrong) {
   }
 }
 
-TEST(ClientRequest, WhatOnlyLooksIsKnown) {
+TEST(ClientRequest, ReadOnlyClientsLackTheFiveControlCommands) {
   const auto all = commands_of(Role::operate);
   const auto looking = commands_of(Role::look);
   EXPECT_EQ(all.size(), looking.size() + 5);
@@ -144,7 +144,7 @@ TEST(ClientRequest, WhatOnlyLooksIsKnown) {
   }
 }
 
-TEST(ClientRequest, ANameHasItsBounds) {
+TEST(ClientRequest, AClientNameHasAtMost64Characters) {
   const auto hello = [](std::size_t letters) {
     return R"({"command":"hello","client":")" + std::string(letters, 'x') + R"("})";
   };
@@ -153,13 +153,13 @@ TEST(ClientRequest, ANameHasItsBounds) {
   EXPECT_EQ(parse_client_request(R"({"command":"subscribe"})")->since, std::nullopt);
 }
 
-TEST(ClientRequest, TheErrorCarriesTheIdWhereItCouldBeRead) {
+TEST(ClientRequest, AnErrorContainsTheIdOfTheRequest) {
   const auto request = parse_client_request(R"({"id":3,"command":"fly"})");
   ASSERT_FALSE(request);
   EXPECT_EQ(request.error().id, 3U);
 }
 
-TEST(ClientRequest, DepthCostsNothing) {
+TEST(ClientRequest, DeeplyNestedJsonIsRefused) {
   std::string line = R"({"command":)";
   line += std::string(60'000, '[');
   EXPECT_FALSE(parse_client_request(line));
@@ -167,7 +167,7 @@ TEST(ClientRequest, DepthCostsNothing) {
 
 // Parses the corpus of the fuzz target in every build. Each line is parsed complete, cut off at every byte,
 // and with every byte changed.
-TEST(ClientRequest, TheFuzzersCorpusIsHarmless) {
+TEST(ClientRequest, TheFuzzCorpusCausesNoFailure) {
   const auto feed = [](const std::string& line) {
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
   };

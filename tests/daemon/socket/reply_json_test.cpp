@@ -9,7 +9,7 @@
 namespace softgrip::daemon::reply_json_test {
 namespace {
 
-TEST(ReplyJson, AGreetingSaysWhatTheRoleMay) {
+TEST(ReplyJson, AGreetingListsTheCommandsOfTheRole) {
   const rig::SocketSettings settings;
   const auto viewer = hello_json({"1.2", "2026-11-21T09:00:00.000Z", Role::look, "", 1}, settings);
   EXPECT_EQ(viewer["role"], "look");
@@ -26,7 +26,7 @@ TEST(ReplyJson, AGreetingSaysWhatTheRoleMay) {
   EXPECT_TRUE(may(viewer, "subscribe"));
 }
 
-TEST(ReplyJson, AnErrorIsALine) {
+TEST(ReplyJson, AnErrorReplyIsOneJsonLine) {
   EXPECT_EQ(error_line(7, "busy", "later"),
             "{\"id\":7,\"ok\":false,\"error\":{\"code\":\"busy\",\"message\":\"later\"}}\n");
   EXPECT_EQ(error_line(std::nullopt, "too_long", "x").substr(0, 10), "{\"id\":null");

@@ -92,7 +92,7 @@ class SocketServerTest : public ::testing::Test {
   Nanoseconds now_ = MonotonicClock().now();
 };
 
-TEST_F(SocketServerTest, TheFileHasTheModeThatWasAskedFor) {
+TEST_F(SocketServerTest, TheSocketFileHasTheConfiguredMode) {
   settings_.mode = 0640;
   server();
   struct stat status {};
@@ -100,7 +100,7 @@ TEST_F(SocketServerTest, TheFileHasTheModeThatWasAskedFor) {
   EXPECT_EQ(status.st_mode & 0777, 0640U);
 }
 
-TEST_F(SocketServerTest, AGroupThatIsNotThereIsAnError) {
+TEST_F(SocketServerTest, AMissingGroupIsAnError) {
   settings_.group = "no-such-group";
   const auto listening = SocketServer::listen(settings_);
   ASSERT_FALSE(listening);
@@ -108,7 +108,7 @@ TEST_F(SocketServerTest, AGroupThatIsNotThereIsAnError) {
   EXPECT_FALSE(std::filesystem::exists(settings_.path));
 }
 
-TEST_F(SocketServerTest, RemovesItsFileAndReplacesThatOfADaemonThatIsGone) {
+TEST_F(SocketServerTest, RemovesTheSocketFileAndReplacesAStaleOne) {
   server();
   server_.reset();
   EXPECT_FALSE(std::filesystem::exists(settings_.path));
@@ -125,7 +125,7 @@ TEST_F(SocketServerTest, RemovesItsFileAndReplacesThatOfADaemonThatIsGone) {
   const Descriptor client = connect_to(settings_.path);
 }
 
-TEST_F(SocketServerTest, ASecondDaemonIsRefusedAndDoesNotTakeTheFileAway) {
+TEST_F(SocketServerTest, ASecondDaemonIsRefusedAndTheFileRemains) {
   server();
   const auto second = SocketServer::listen(settings_);
   ASSERT_FALSE(second);
@@ -133,13 +133,13 @@ TEST_F(SocketServerTest, ASecondDaemonIsRefusedAndDoesNotTakeTheFileAway) {
   const Descriptor client = connect_to(settings_.path);
 }
 
-TEST_F(SocketServerTest, AFileThatIsNoSocketIsNotTouched) {
+TEST_F(SocketServerTest, AFileThatIsNotASocketIsNotChanged) {
   { std::ofstream(settings_.path) << "precious"; }
   EXPECT_FALSE(SocketServer::listen(settings_));
   EXPECT_EQ(testing::text_of(settings_.path), "precious");
 }
 
-TEST_F(SocketServerTest, LinesArriveWholeHoweverTheyAreCut) {
+TEST_F(SocketServerTest, FragmentedLinesAreReceivedComplete) {
   server();
   const Descriptor client = connect_to(settings_.path);
   turn();
@@ -154,7 +154,7 @@ TEST_F(SocketServerTest, LinesArriveWholeHoweverTheyAreCut) {
   EXPECT_EQ(lines_.back(), "third");
 }
 
-TEST_F(SocketServerTest, ALineThatIsTooLongIsAnsweredAndEndsTheConnection) {
+TEST_F(SocketServerTest, ATooLongLineIsAnsweredAndClosesTheConnection) {
   server();
   const Descriptor client = connect_to(settings_.path);
   turn();
@@ -166,7 +166,7 @@ TEST_F(SocketServerTest, ALineThatIsTooLongIsAnsweredAndEndsTheConnection) {
   EXPECT_EQ(closed_, 1);
 }
 
-TEST_F(SocketServerTest, AnEndlessLineIsCutOffBeforeItCostsMemory) {
+TEST_F(SocketServerTest, AnUnterminatedLongLineClosesTheConnection) {
   server();
   const Descriptor client = connect_to(settings_.path);
   turn();
@@ -176,7 +176,7 @@ TEST_F(SocketServerTest, AnEndlessLineIsCutOffBeforeItCostsMemory) {
   EXPECT_EQ(server().clients(), 0U);
 }
 
-TEST_F(SocketServerTest, OneClientTooManyIsToldSoWhenItSpeaksAndTheOthersStay) {
+TEST_F(SocketServerTest, AnExcessClientIsRefusedAndTheOthersStay) {
   server();
   std::vector<Descriptor> clients;
   for (int i = 0; i < 4; ++i) clients.push_back(connect_to(settings_.path));
@@ -191,7 +191,7 @@ TEST_F(SocketServerTest, OneClientTooManyIsToldSoWhenItSpeaksAndTheOthersStay) {
   EXPECT_EQ(lines_, std::vector<std::string>{"still here"});
 }
 
-TEST_F(SocketServerTest, AnUrgentLineIsHeardThoughAllPlacesAreTaken) {
+TEST_F(SocketServerTest, AnUrgentLineIsAcceptedAtTheClientLimit) {
   answer_ = [this](std::uint64_t client, std::string_view) { server().send(client, "done\n", false); };
   server();
   std::vector<Descriptor> clients;
@@ -211,7 +211,7 @@ TEST_F(SocketServerTest, AnUrgentLineIsHeardThoughAllPlacesAreTaken) {
   EXPECT_FALSE(received(late)) << "only one message was sent";
 }
 
-TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
+TEST_F(SocketServerTest, TheLongestSilentClientIsDisconnectedFirst) {
   server();
   std::vector<Descriptor> clients;
   for (int i = 0; i < 3; ++i) {
@@ -236,7 +236,7 @@ TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
   EXPECT_EQ(received(clients[3]), "");
 }
 
-TEST_F(SocketServerTest, AClientThatKeepsItsPlaceIsDisplacedByNobody) {
+TEST_F(SocketServerTest, AProtectedClientIsNeverDisplaced) {
   keeps_ = {1, 3};
   server();
   std::vector<Descriptor> clients;
@@ -267,7 +267,7 @@ TEST_F(SocketServerTest, AClientThatKeepsItsPlaceIsDisplacedByNobody) {
   EXPECT_EQ(lines_, std::vector<std::string>{"urgent: down"});
 }
 
-TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
+TEST_F(SocketServerTest, ReadOnlyClientsHaveASeparateClientLimit) {
   settings_.look.path = temporary_.path() + "/look";
   settings_.look.mode = 0666;
   server();
@@ -294,7 +294,7 @@ TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
   EXPECT_NE(stat(settings_.look.path.c_str(), &status), 0) << "the read-only socket file is also removed";
 }
 
-TEST_F(SocketServerTest, WhoOperatesIsHeardBeforeWhoLooks) {
+TEST_F(SocketServerTest, OperatorsAreServedBeforeReadOnlyClients) {
   settings_.look.path = temporary_.path() + "/look";
   server();
   const Descriptor looking = connect_to(settings_.look.path);
@@ -307,7 +307,7 @@ TEST_F(SocketServerTest, WhoOperatesIsHeardBeforeWhoLooks) {
   EXPECT_EQ(lines_, (std::vector<std::string>{"second", "first"}));
 }
 
-TEST_F(SocketServerTest, ACrowdThatComesAndGoesLeavesRoomForAnUrgentLine) {
+TEST_F(SocketServerTest, ManyClientsDoNotBlockAnUrgentLine) {
   server();
   std::vector<Descriptor> crowd;
   for (int i = 0; i < 300; ++i) {
@@ -322,7 +322,7 @@ TEST_F(SocketServerTest, ACrowdThatComesAndGoesLeavesRoomForAnUrgentLine) {
   EXPECT_NE(std::find(lines_.begin(), lines_.end(), "urgent: down"), lines_.end());
 }
 
-TEST_F(SocketServerTest, AClientThatSendsMuchWaitsForTheOthers) {
+TEST_F(SocketServerTest, AClientWithManyRequestsDoesNotBlockOthers) {
   answer_ = [](std::uint64_t, std::string_view line) {
     if (line == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(5));
   };
@@ -339,7 +339,7 @@ TEST_F(SocketServerTest, AClientThatSendsMuchWaitsForTheOthers) {
   EXPECT_LT(lines_.size(), 10U);
 }
 
-TEST_F(SocketServerTest, AFileThatIsNoLongerItsOwnStays) {
+TEST_F(SocketServerTest, ASocketFileOfAnotherServerIsNotRemoved) {
   server();
   std::filesystem::remove(settings_.path);
   auto another = SocketServer::listen(settings_);
@@ -348,7 +348,7 @@ TEST_F(SocketServerTest, AFileThatIsNoLongerItsOwnStays) {
   EXPECT_TRUE(std::filesystem::exists(settings_.path));
 }
 
-TEST_F(SocketServerTest, AnAnswerBeyondItsBoundDropsTheClient) {
+TEST_F(SocketServerTest, AReplyAboveTheQueueLimitDisconnectsTheClient) {
   answer_ = [this](std::uint64_t client, std::string_view) {
     server().send(client, std::string(400'000, 'a'), false);
   };
@@ -361,7 +361,7 @@ TEST_F(SocketServerTest, AnAnswerBeyondItsBoundDropsTheClient) {
   EXPECT_EQ(lines_.size(), 1U);
 }
 
-TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
+TEST_F(SocketServerTest, AClientThatDoesNotReadIsPausedThenDisconnected) {
   answer_ = [this](std::uint64_t client, std::string_view) {
     server().send(client, std::string(50'000, 'a'), false);
   };
@@ -378,7 +378,7 @@ TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
   EXPECT_EQ(server().clients(), 0U);
 }
 
-TEST_F(SocketServerTest, WhatAClientHasSentAtOnceWaitsAsLongAsItTakesNoAnswers) {
+TEST_F(SocketServerTest, RequestsWaitUntilTheClientReadsTheReplies) {
   answer_ = [this](std::uint64_t client, std::string_view) {
     server().send(client, std::string(250'000, 'a'), false);
   };
@@ -399,7 +399,7 @@ TEST_F(SocketServerTest, WhatAClientHasSentAtOnceWaitsAsLongAsItTakesNoAnswers) 
   EXPECT_GT(lines_.size(), before);
 }
 
-TEST_F(SocketServerTest, ASlowWatcherMissesLinesAndThenIsDropped) {
+TEST_F(SocketServerTest, ASlowWatcherMissesStatesAndIsDisconnected) {
   std::uint64_t watcher = 0;
   answer_ = [&](std::uint64_t client, std::string_view) { watcher = client; };
   server();
@@ -413,7 +413,7 @@ TEST_F(SocketServerTest, ASlowWatcherMissesLinesAndThenIsDropped) {
   EXPECT_EQ(server().clients(), 0U) << "the client has read nothing for 10 s";
 }
 
-TEST_F(SocketServerTest, ASlowClientThatReadsOnStays) {
+TEST_F(SocketServerTest, ASlowClientThatKeepsReadingStaysConnected) {
   std::uint64_t watcher = 0;
   answer_ = [&](std::uint64_t client, std::string_view) { watcher = client; };
   server();
@@ -428,7 +428,7 @@ TEST_F(SocketServerTest, ASlowClientThatReadsOnStays) {
   EXPECT_EQ(server().clients(), 1U);
 }
 
-TEST_F(SocketServerTest, AClientThatEndsItsSendingSideStillGetsItsAnswer) {
+TEST_F(SocketServerTest, AHalfClosedConnectionStillReceivesTheReply) {
   std::uint64_t asker = 0;
   answer_ = [&](std::uint64_t client, std::string_view) { asker = client; };
   server();
@@ -443,7 +443,7 @@ TEST_F(SocketServerTest, AClientThatEndsItsSendingSideStillGetsItsAnswer) {
   EXPECT_EQ(server().clients(), 0U);
 }
 
-TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
+TEST_F(SocketServerTest, AnUrgentLineOfADisconnectedClientIsProcessed) {
   std::uint64_t sender = 0;
   answer_ = [&](std::uint64_t client, std::string_view) { sender = client; };
   server();
@@ -468,7 +468,7 @@ TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
   EXPECT_EQ(closed_, 3);
 }
 
-TEST_F(SocketServerTest, AClientThatVanishesIsForgotten) {
+TEST_F(SocketServerTest, ADisconnectedClientIsRemoved) {
   answer_ = [this](std::uint64_t client, std::string_view) { server().send(client, "answer\n", false); };
   server();
   {

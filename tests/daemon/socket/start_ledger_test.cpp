@@ -7,7 +7,7 @@
 namespace softgrip::daemon::start_ledger_test {
 namespace {
 
-TEST(StartLedger, AStartIsFoundByItsNumberAndByItsId) {
+TEST(StartLedger, AStartIsFoundByRequestNumberAndByStartId) {
   StartLedger ledger;
   ledger.add({4, "a", 11}, 0);
   ledger.add({6, "", 12}, 4);
@@ -21,7 +21,7 @@ TEST(StartLedger, AStartIsFoundByItsNumberAndByItsId) {
   EXPECT_EQ(ledger.request_of(""), std::nullopt) << "a start without an id matches no other start";
 }
 
-TEST(StartLedger, WhatAStopHasNamedBeforeItCameIsForbidden) {
+TEST(StartLedger, AStartIdNamedByAnEarlierStopIsForbidden) {
   StartLedger ledger;
   EXPECT_FALSE(ledger.is_forbidden("a"));
   ledger.forbid("a");
@@ -29,7 +29,7 @@ TEST(StartLedger, WhatAStopHasNamedBeforeItCameIsForbidden) {
   EXPECT_FALSE(ledger.is_forbidden("")) << "a start without an id is always permitted";
 }
 
-TEST(StartLedger, TheOldestGoButForTheOneThatRuns) {
+TEST(StartLedger, TheOldestStartsAreRemovedExceptTheRunningOne) {
   StartLedger ledger;
   ledger.add({1, "runs", 7}, 0);
   for (std::uint32_t request = 2; request < 2000; ++request) {

@@ -30,14 +30,14 @@ class UnderPressure : public ::testing::Test {
   Snapshot snapshot_;
 };
 
-TEST_F(UnderPressure, NothingIsSaidWhereTheControllerSaysSo) {
+TEST_F(UnderPressure, ReportsNothingIfTheControllerReportsNoPressure) {
   EXPECT_TRUE(json().is_null());
   set(30, 30);
   snapshot_.under_pressure = 0;
   EXPECT_TRUE(json().is_null()) << "a moving finger is not reported as pressurised";
 }
 
-TEST_F(UnderPressure, WhatStaysOnIsNamedWithTheCommandThatEndsIt) {
+TEST_F(UnderPressure, NamesPressurisedFingersAndTheCommandToVent) {
   set(2, 36.04);
   const auto idle = json();
   ASSERT_EQ(idle["channels"].size(), 1U);

@@ -17,11 +17,11 @@ BoardMap map_of_two_outputs() {
   return map;
 }
 
-TEST(ChannelWiring, TwoFingersFit) {
+TEST(ChannelWiring, AcceptsTwoValidChannels) {
   EXPECT_TRUE(wiring_problems(map_of_two_outputs(), test::two_fingers()).empty());
 }
 
-TEST(ChannelWiring, EachMistakeIsOneProblemThatNamesItsChannel) {
+TEST(ChannelWiring, EachMistakeCausesOneProblemThatNamesTheChannel) {
   using Mistake = std::function<void(std::vector<ChannelWiring>&)>;
   const std::vector<std::pair<Mistake, std::string>> mistakes{
       {[](auto& w) { w[1].valve.output = 2; }, "no output 2"},
@@ -45,7 +45,7 @@ TEST(ChannelWiring, EachMistakeIsOneProblemThatNamesItsChannel) {
   EXPECT_EQ(wiring_problems(map_of_two_outputs(), {}).size(), 1U);
 }
 
-TEST(ChannelWiring, AThermometerMayBeSharedAndNothingElse) {
+TEST(ChannelWiring, ChannelsMayShareOnlyATemperatureInput) {
   std::vector<ChannelWiring> wiring = test::two_fingers_and_a_thermometer();
   EXPECT_TRUE(wiring_problems(map_of_two_outputs(), wiring).empty());
   wiring[1].temperature->valid_max = 0;

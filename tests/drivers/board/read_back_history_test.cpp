@@ -12,7 +12,7 @@ ReadBack rules(double tolerance_raw, std::uint32_t lag_exchanges) {
   return {.registers = {}, .tolerance_raw = tolerance_raw, .lag_exchanges = lag_exchanges};
 }
 
-TEST(ReadBackHistory, WithoutLagOnlyTheNewest) {
+TEST(ReadBackHistory, AcceptsOnlyTheNewestValueWithoutLag) {
   ReadBackHistory history(rules(1, 0), 2);
   history.note(std::array{100.0, 200.0});
   EXPECT_TRUE(history.accepts(0, 101));
@@ -23,14 +23,14 @@ TEST(ReadBackHistory, WithoutLagOnlyTheNewest) {
   EXPECT_FALSE(history.accepts(0, 100));
 }
 
-TEST(ReadBackHistory, WithLagTheOnesBefore) {
+TEST(ReadBackHistory, AcceptsEarlierValuesWithinTheLag) {
   ReadBackHistory history(rules(0, 2), 1);
   for (const double raw : {1.0, 2.0, 3.0, 4.0}) history.note(std::array{raw});
   EXPECT_FALSE(history.accepts(0, 1));
   for (const double raw : {2.0, 3.0, 4.0}) EXPECT_TRUE(history.accepts(0, raw));
 }
 
-TEST(ReadBackHistory, ANewSessionMayStillShowWhatWasBefore) {
+TEST(ReadBackHistory, AcceptsAnyValueWithinTheLagOfANewSession) {
   ReadBackHistory history(rules(0, 1), 1);
   for (int session = 0; session < 2; ++session) {
     history.note(std::array{5.0});
@@ -42,7 +42,7 @@ TEST(ReadBackHistory, ANewSessionMayStillShowWhatWasBefore) {
   }
 }
 
-TEST(ReadBackHistory, NoNumberIsNeverAccepted) {
+TEST(ReadBackHistory, NeverAcceptsNaNAsReadBack) {
   ReadBackHistory history(rules(1e9, 1), 1);
   for (int i = 0; i < 3; ++i) {
     history.note(std::array{5.0});

@@ -23,7 +23,7 @@ double there_and_back(double raw, RegisterKind kind, WordOrder order) {
   return decode(std::span(words).first(words_of(kind)), kind, order);
 }
 
-TEST(Registers, KnownBits) {
+TEST(Registers, EncodeAndDecodeKnownBitPatterns) {
   std::array<std::uint16_t, 2> words{};
   encode(-2, RegisterKind::int16, WordOrder::high_first, words);
   EXPECT_EQ(words[0], 0xfffe);
@@ -37,7 +37,7 @@ TEST(Registers, KnownBits) {
             -1.5);
 }
 
-TEST(Registers, SwappedBytes) {
+TEST(Registers, EncodeAndDecodeSwappedBytes) {
   std::array<std::uint16_t, 2> words{};
   encode(100000, RegisterKind::uint32, WordOrder::high_first_bytes_swapped, words);
   EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0x0100, 0xa086}));
@@ -52,7 +52,7 @@ TEST(Registers, SwappedBytes) {
   }
 }
 
-TEST(Registers, WholeKindsRoundTripAndSaturate) {
+TEST(Registers, IntegerKindsRoundTripAndSaturate) {
   for (const WordOrder order : orders) {
     for (const RegisterKind kind : kinds) {
       for (const double raw : {0.0, 1.0, 4095.0, 32767.0}) EXPECT_EQ(there_and_back(raw, kind, order), raw);
@@ -101,7 +101,7 @@ TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
 
 // Converts a physical value to an electrical value, to a raw register value, and back. For every register
 // kind, word order and slope, the error must be at most half a step of the converter.
-TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
+TEST(Scaling, ARoundTripThroughARegisterIsWithinHalfAStep) {
   const unsigned seed = 13;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> share(0, 1);
@@ -138,7 +138,7 @@ TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
   }
 }
 
-TEST(Scaling, QuantisedRawHasTheConvertersSteps) {
+TEST(Scaling, QuantisationUsesTheStepsOfTheConverter) {
   TerminalBlock block;
   block.registers.kind = RegisterKind::float32;
   block.scaling = {0, 0, 10, 10};
@@ -181,7 +181,7 @@ class JudgedInputTest : public testing::Test {
   InputWiring wiring_;
 };
 
-TEST_F(JudgedInputTest, InsideTheRangeBothEndsIncluded) {
+TEST_F(JudgedInputTest, BothLimitsOfTheRangeAreValid) {
   EXPECT_EQ(judged(4000).validity, Validity::valid);
   EXPECT_DOUBLE_EQ(judged(4000).physical, 135);
   EXPECT_DOUBLE_EQ(judged(20000).physical, 65);
@@ -192,13 +192,13 @@ TEST_F(JudgedInputTest, InsideTheRangeBothEndsIncluded) {
   EXPECT_EQ(judged(20001).validity, Validity::out_of_range);
 }
 
-TEST_F(JudgedInputTest, ErrorCodesBeforeRanges) {
+TEST_F(JudgedInputTest, AnErrorCodeHasPriorityOverTheRange) {
   EXPECT_EQ(judged(3750).validity, Validity::sensor_error);
   EXPECT_EQ(judged(3700).validity, Validity::sensor_error);
   EXPECT_EQ(judged(3690).validity, Validity::out_of_range);
 }
 
-TEST_F(JudgedInputTest, BoardErrorCarriesNoValue) {
+TEST_F(JudgedInputTest, AnErrorOfTheBoardHasNoValue) {
   for (const double raw :
        {-32768.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(judged(raw).validity, Validity::sensor_error);
@@ -206,7 +206,7 @@ TEST_F(JudgedInputTest, BoardErrorCarriesNoValue) {
   }
 }
 
-TEST_F(JudgedInputTest, StatusRegister) {
+TEST_F(JudgedInputTest, CombinesTheStatusRegisterWithTheSensorLimits) {
   map_.input_status = StatusBlock{.registers = {}, .ok = {0, 8}, .over = {1}, .under = {2}};
   EXPECT_EQ(judged(12000, std::uint16_t{0}).validity, Validity::valid);
   EXPECT_EQ(judged(12000, std::uint16_t{8}).validity, Validity::valid);

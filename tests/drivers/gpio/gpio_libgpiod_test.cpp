@@ -76,7 +76,7 @@ TEST_F(Libgpiod, RequestsEachLineAsDescribed) {
   EXPECT_TRUE((*lines)->sees_edges());
 }
 
-TEST_F(Libgpiod, KnowsAChipByItsLabelItsLinksAndItsAddress) {
+TEST_F(Libgpiod, FindsAChipByLabelLinkAndAddress) {
   add_chip("gpiochip1", "second", 2);
   std::filesystem::create_symlink("gpiochip1", devices_ / "gpiochip4");
   const std::filesystem::path bus = devices_ / "bus/gpio/devices";
@@ -96,7 +96,7 @@ TEST_F(Libgpiod, KnowsAChipByItsLabelItsLinksAndItsAddress) {
   }
 }
 
-TEST_F(Libgpiod, PassesEveryBiasOn) {
+TEST_F(Libgpiod, AppliesEveryBiasSetting) {
   const std::array<std::pair<GpioBias, FakeBias>, 4> all{{{GpioBias::as_is, FakeBias::as_is},
                                                           {GpioBias::disabled, FakeBias::disabled},
                                                           {GpioBias::pull_up, FakeBias::pull_up},
@@ -126,7 +126,7 @@ TEST_F(Libgpiod, ReadsAndWritesLogicalLevels) {
   EXPECT_EQ((*lines)->read(GpioRole::part_in_position), std::nullopt);
 }
 
-TEST_F(Libgpiod, TakesEdgesWithTheirTimes) {
+TEST_F(Libgpiod, ReturnsEdgesWithTimestamps) {
   const auto lines = open({line(GpioRole::emergency_stop, 0), line(GpioRole::part_in_position, 1)});
   ASSERT_TRUE(lines.has_value());
   std::array<GpioEdge, 8> edges;
@@ -143,7 +143,7 @@ TEST_F(Libgpiod, TakesEdgesWithTheirTimes) {
   EXPECT_EQ((*lines)->wait(no_wait, edges), 0U);
 }
 
-TEST_F(Libgpiod, LeavesEdgesThatDoNotFitForTheNextCall) {
+TEST_F(Libgpiod, ReturnsRemainingEdgesInTheNextCall) {
   const auto lines = open({line(GpioRole::emergency_stop, 0)});
   ASSERT_TRUE(lines.has_value());
   for (int i = 0; i < 5; ++i) chips()[0].lines[0].change(i % 2 == 0, i);
@@ -163,7 +163,7 @@ TEST_F(Libgpiod, ReadsLevelsWhereAChipHasNoInterrupts) {
   EXPECT_EQ((*lines)->read(GpioRole::emergency_stop), true);
 }
 
-TEST_F(Libgpiod, SaysThatAChipFailed) {
+TEST_F(Libgpiod, ReportsTheFailureOfAChip) {
   const auto lines = open({line(GpioRole::emergency_stop, 0), line(GpioRole::enable, 1)});
   ASSERT_TRUE(lines.has_value());
   chips()[0].lines[0].change(true, 1);
@@ -188,7 +188,7 @@ TEST_F(Libgpiod, FindsChipsByLabelAndLinesByName) {
   EXPECT_EQ(none.hint, "there are gpiochip0 (label `first`) and gpiochip1 (label `second`)");
 }
 
-TEST_F(Libgpiod, RefusesAWordOfTwoChipsAndListsBoth) {
+TEST_F(Libgpiod, RefusesANameOfTwoChipsAndListsBothChips) {
   add_chip("gpiochip1", "first", 2);
   add_chip("gpiochip2", "gpiochip0", 2);
   GpioLineSettings stop = line(GpioRole::emergency_stop, 0);
@@ -203,7 +203,7 @@ TEST_F(Libgpiod, RefusesAWordOfTwoChipsAndListsBoth) {
   for (const FakeChip& chip : chips()) EXPECT_FALSE(chip.lines[0].used) << chip.name;
 }
 
-TEST_F(Libgpiod, RefusesANameOfTwoLinesAndListsBoth) {
+TEST_F(Libgpiod, RefusesANameOfTwoLinesAndListsBothLines) {
   chips()[0].lines[5].name = "ESTOP";
   GpioLineSettings stop;
   stop.chip = "gpiochip0";
@@ -214,7 +214,7 @@ TEST_F(Libgpiod, RefusesANameOfTwoLinesAndListsBoth) {
   EXPECT_FALSE(chips()[0].lines[2].used || chips()[0].lines[5].used);
 }
 
-TEST_F(Libgpiod, RefusesALineBehindTheLast) {
+TEST_F(Libgpiod, RefusesALineNumberBeyondTheLastLine) {
   const GpioFailure beyond = failure({line(GpioRole::enable, 0), line(GpioRole::emergency_stop, 6)});
   EXPECT_EQ(beyond.kind, GpioFailure::Kind::refused);
   EXPECT_EQ(beyond.line, 1U);
@@ -229,7 +229,7 @@ TEST_F(Libgpiod, RefusesAnInputThatIsAnOutput) {
             "the line is configured as an output, but `emergency_stop` is an input");
 }
 
-TEST_F(Libgpiod, NamesWhoHoldsALine) {
+TEST_F(Libgpiod, ErrorNamesTheConsumerOfABusyLine) {
   chips()[0].lines[0].used = true;
   chips()[0].lines[0].consumer = "button";
   const GpioFailure busy = failure({line(GpioRole::emergency_stop, 0)});
@@ -237,7 +237,7 @@ TEST_F(Libgpiod, NamesWhoHoldsALine) {
   EXPECT_EQ(busy.message, "the line is in use by `button`");
 }
 
-TEST_F(Libgpiod, SaysThatAChipMayNotBeOpened) {
+TEST_F(Libgpiod, ReportsMissingPermissionToOpenAChip) {
   chips()[0].open_error = EACCES;
   const GpioFailure denied = failure({line(GpioRole::emergency_stop, 0)});
   EXPECT_EQ(denied.kind, GpioFailure::Kind::failed);
@@ -245,7 +245,7 @@ TEST_F(Libgpiod, SaysThatAChipMayNotBeOpened) {
   EXPECT_NE(denied.hint.find("udev"), std::string::npos);
 }
 
-TEST_F(Libgpiod, GivesTheLinesBack) {
+TEST_F(Libgpiod, ReleasesAllLinesOnDestruction) {
   {
     const auto lines = open({line(GpioRole::emergency_stop, 0), line(GpioRole::enable, 1)});
     ASSERT_TRUE(lines.has_value());

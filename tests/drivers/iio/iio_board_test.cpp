@@ -78,7 +78,7 @@ class IioBoardTest : public testing::Test {
   std::vector<Reading> readings_{2};
 };
 
-TEST_F(IioBoardTest, WritesRawNumbersAndReadsThem) {
+TEST_F(IioBoardTest, WritesAndReadsRawValues) {
   const ModuleTerminals terminals = terminals_of(settings_);
   ASSERT_TRUE(wiring_problems({&terminals, 1}, settings_.wiring).empty());
   IioBoard board(settings_);
@@ -95,7 +95,7 @@ TEST_F(IioBoardTest, WritesRawNumbersAndReadsThem) {
   EXPECT_GT(readings_[1].sampled_at, 0);
 }
 
-TEST_F(IioBoardTest, ATemperatureIsReadWhereItIsWired) {
+TEST_F(IioBoardTest, ReadsAConfiguredTemperatureInput) {
   put("iio:device0/in_voltage2_raw", "18400");
   put("iio:device0/in_voltage2_scale", "0.125");
   settings_.inputs.push_back({"ads1115", "voltage2", 0});
@@ -114,7 +114,7 @@ TEST_F(IioBoardTest, ATemperatureIsReadWhereItIsWired) {
       << board.budget().explanation;
 }
 
-TEST_F(IioBoardTest, OffsetsCountBeforeTheScale) {
+TEST_F(IioBoardTest, AppliesTheOffsetBeforeTheScale) {
   put("iio:device1/out_voltage_offset", "-100");
   put("iio:device0/in_voltage0_offset", "800");
   IioBoard board(settings_);
@@ -124,7 +124,7 @@ TEST_F(IioBoardTest, OffsetsCountBeforeTheScale) {
   EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, -5 + 12.5 * 1.1);
 }
 
-TEST_F(IioBoardTest, ValidityIsTheSensors) {
+TEST_F(IioBoardTest, ValidityFollowsFromTheRangeOfTheSensor) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok);
   put("iio:device0/in_voltage0_raw", "32767");
@@ -133,7 +133,7 @@ TEST_F(IioBoardTest, ValidityIsTheSensors) {
   EXPECT_EQ(readings_[1].validity, Validity::valid);
 }
 
-TEST_F(IioBoardTest, ACommandBeyondTheConverterIsReportedAndItsEndWritten) {
+TEST_F(IioBoardTest, ACommandAboveTheRangeIsLimitedAndReported) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok);
   EXPECT_EQ(exchange(board, 110, 10), BusStatus::write_refused);
@@ -143,7 +143,7 @@ TEST_F(IioBoardTest, ACommandBeyondTheConverterIsReportedAndItsEndWritten) {
   EXPECT_EQ(exchange(board, std::nan(""), 0), BusStatus::write_refused);
 }
 
-TEST_F(IioBoardTest, WhatIsNotThereIsSaid) {
+TEST_F(IioBoardTest, ErrorNamesAMissingDeviceChannelOrAttribute) {
   settings_.inputs[0].device = "ads1015";
   EXPECT_NE(refusal().find("there are "), std::string::npos);
   EXPECT_NE(refusal().find("ads1115"), std::string::npos) << refusal();
@@ -156,7 +156,7 @@ TEST_F(IioBoardTest, WhatIsNotThereIsSaid) {
   EXPECT_NE(refusal().find("no converter is there"), std::string::npos) << refusal();
 }
 
-TEST_F(IioBoardTest, ANameOfTwoConvertersIsRefusedWithBothAndNothingIsWritten) {
+TEST_F(IioBoardTest, ANameOfTwoConvertersIsRefusedWithoutAWrite) {
   put("iio:device2/name", "dac7578");
   put("iio:device2/out_voltage0_raw", "17");
   put("iio:device2/out_voltage_scale", "0.8");
@@ -176,7 +176,7 @@ TEST_F(IioBoardTest, ANameOfTwoConvertersIsRefusedWithBothAndNothingIsWritten) {
   EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "17");
 }
 
-TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsSwitchedOnAfterItsNumberWasWritten) {
+TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsEnabledAfterTheFirstWrite) {
   put("iio:device1/out_voltage0_powerdown", "1");
   put("iio:device1/out_voltage1_powerdown", "0");
   put("iio:device1/out_voltage0_raw", "1234");
@@ -193,7 +193,7 @@ TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsSwitchedOnAfterItsNumberWasWritt
   EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "2000");
 }
 
-TEST_F(IioBoardTest, ASwitchThatOutputsShareIsReadAndClearedToo) {
+TEST_F(IioBoardTest, ClearsASharedPowerdownAttribute) {
   put("iio:device1/out_voltage_powerdown", "1");
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
@@ -201,7 +201,7 @@ TEST_F(IioBoardTest, ASwitchThatOutputsShareIsReadAndClearedToo) {
   EXPECT_EQ(get("iio:device1/out_voltage_powerdown"), "0");
 }
 
-TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingIsWritten) {
+TEST_F(IioBoardTest, APowerdownThatIsInaccessibleIsRefusedBeforeAnyWrite) {
   put("iio:device1/out_voltage1_powerdown", "off");
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
@@ -214,7 +214,7 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
   EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
 }
 
-TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
+TEST_F(IioBoardTest, APowerdownThatPersistsEndsTheSessionAndBlocksTheNext) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   // The kernel accepts a write of any number to the file urandom_min_reseed_secs. However, the file then
   // still contains a value above 0.
@@ -302,7 +302,7 @@ TEST_F(IioBoardTest, AHeartbeatChangesWithEveryExchange) {
   EXPECT_NE(refusal().find("both are "), std::string::npos) << "an output of a valve cannot be a heartbeat";
 }
 
-TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
+TEST_F(IioBoardTest, RefusesOneConverterChannelWithTwoNames) {
   settings_.outputs[1] = {"iio:device1", "voltage0", 4095};
   EXPECT_NE(refusal().find("dac7578 voltage0 and iio:device1 voltage0: both are "), std::string::npos)
       << refusal();
@@ -357,7 +357,7 @@ TEST_F(IioBusTest, AConverterIsFoundAgainUnderAnotherNumber) {
   EXPECT_EQ(get("iio:device4/out_voltage0_raw"), "2000");
 }
 
-TEST_F(IioBusTest, AnotherConverterOfTheSameNameDoesNotTakeThePlaceOfOneThatIsGone) {
+TEST_F(IioBusTest, RefusesADifferentConverterWithTheSameName) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
   lose(board);
@@ -373,7 +373,7 @@ TEST_F(IioBusTest, AnotherConverterOfTheSameNameDoesNotTakeThePlaceOfOneThatIsGo
   EXPECT_EQ(after_a_start.connect(5s), BusStatus::ok) << after_a_start.detail();
 }
 
-TEST_F(IioBusTest, ALabelFollowsItsConverterToAnotherPlace) {
+TEST_F(IioBusTest, FindsALabelledConverterAtAnotherAddress) {
   put("iio:device1/label", "valves");
   for (IioTerminal& output : settings_.outputs) output.device = "valves";
   IioBoard board(settings_);
@@ -385,7 +385,7 @@ TEST_F(IioBusTest, ALabelFollowsItsConverterToAnotherPlace) {
   EXPECT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
 }
 
-TEST_F(IioBoardTest, AConverterThatShowsNoNumberEndsTheSession) {
+TEST_F(IioBoardTest, ANonNumericReadingEndsTheSession) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok);
   put("iio:device0/in_voltage0_raw", "no");

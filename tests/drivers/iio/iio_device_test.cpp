@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(IioDevice, IsKnownByItsLabelItsNameItsSerialNumberAndItsAddress) {
+TEST(IioDevice, ReportsLabelNameSerialNumberAndAddress) {
   const ScratchFolder scratch;
   const fs::path root = fs::canonical(scratch.path());
   const fs::path hardware = root / "devices/i2c-1/1-0060";
@@ -33,7 +33,7 @@ TEST(IioDevice, IsKnownByItsLabelItsNameItsSerialNumberAndItsAddress) {
   EXPECT_TRUE(converters_in(root / "absent").empty());
 }
 
-TEST(IioDevice, IsItsNameWhereItIsOnNoBus) {
+TEST(IioDevice, IdentityIsTheNameIfTheDeviceIsOnNoBus) {
   const ScratchFolder scratch;
   fs::create_directories(fs::path(scratch.path()) / "iio:device0");
   std::ofstream(fs::path(scratch.path()) / "iio:device0/name") << "dac7578\n";
@@ -52,7 +52,7 @@ class IioScalingTest : public testing::Test {
   const fs::path folder_ = fs::temp_directory_path() / ("softgrip_iio_scaling_" + std::to_string(::getpid()));
 };
 
-TEST_F(IioScalingTest, IsThatOfTheChannelOrOfAllChannels) {
+TEST_F(IioScalingTest, UsesTheScaleOfTheChannelOrTheSharedScale) {
   put("in_voltage_scale", "2");
   put("in_voltage_offset", "-5");
   put("in_voltage1_scale", "4");
@@ -63,7 +63,7 @@ TEST_F(IioScalingTest, IsThatOfTheChannelOrOfAllChannels) {
   EXPECT_EQ(scaling_of(folder_, "voltage0", true).scale, 0) << "an output does not have the scale of inputs";
 }
 
-TEST_F(IioScalingTest, OfAProcessedNumberConvertsOnlyItsUnit) {
+TEST_F(IioScalingTest, ConvertsOnlyTheUnitOfAProcessedValue) {
   EXPECT_DOUBLE_EQ(scaling_of_processed("voltage0").scale, 1e-3);
   EXPECT_EQ(scaling_of_processed("current0").scale, 1);
   EXPECT_EQ(scaling_of_processed("pressure").offset, 0);

@@ -27,7 +27,7 @@ using namespace rig;
 using softgrip::test::allocations_of;
 using test::RegisterServer;
 
-TEST(Allocation, TheCounterCounts) {
+TEST(Allocation, TheCounterDetectsAnAllocation) {
   static std::vector<std::string> kept;  // static, so that the compiler must keep the allocation
   EXPECT_GT(allocations_of([] { kept.emplace_back(100, 'x'); }), 0U);
   EXPECT_EQ(allocations_of([] {}), 0U);
@@ -65,12 +65,12 @@ class ModbusAllocation : public testing::Test {
   std::array<Reading, 2> readings_;
 };
 
-TEST_F(ModbusAllocation, GoodExchanges) {
+TEST_F(ModbusAllocation, SuccessfulExchangesAllocateNoMemory) {
   connect();
   for (int i = 0; i < 50; ++i) expect(BusStatus::ok, {1.0 * i, 2.0 * i});
 }
 
-TEST_F(ModbusAllocation, EveryWayAnExchangeCanFail) {
+TEST_F(ModbusAllocation, FailedExchangesAllocateNoMemory) {
   connect();
   expect(BusStatus::write_refused, {10, 1234.5678});
   expect(BusStatus::write_refused, {10, std::numeric_limits<double>::quiet_NaN()});
@@ -88,7 +88,7 @@ TEST_F(ModbusAllocation, EveryWayAnExchangeCanFail) {
   expect(BusStatus::disconnected, {10, 10});
 }
 
-TEST_F(ModbusAllocation, RepliesOfAHostileServer) {
+TEST_F(ModbusAllocation, MalformedResponsesCauseNoAllocation) {
   int kind = 0;
   test::ScriptedServer hostile([&kind](test::Peer& peer, const test::Bytes& request, std::size_t) {
     test::Bytes reply = test::frame_for(request, {request.at(7), 0, 10, 0, 2});
@@ -106,7 +106,7 @@ TEST_F(ModbusAllocation, RepliesOfAHostileServer) {
   }
 }
 
-TEST_F(ModbusAllocation, ATrippedWatchdogAndItsClearing) {
+TEST_F(ModbusAllocation, AWatchdogTripCausesNoAllocation) {
   BoardWatchdog& watchdog = settings_.modules[0].map.watchdog;
   watchdog.tripped = BoardWatchdog::Tripped{.function = 1, .address = 32, .mask = 1};
   watchdog.clear = {FixedWrite{.function = 5, .address = 32, .value = 0}};
@@ -117,7 +117,7 @@ TEST_F(ModbusAllocation, ATrippedWatchdogAndItsClearing) {
   expect(BusStatus::watchdog_tripped, {10, 10});
 }
 
-TEST(SimulatedAllocation, TenSecondsWithEverythingThatCanHappen) {
+TEST(SimulatedAllocation, ExchangesWithEveryEventAllocateNoMemory) {
   document::Problems problems;
   const auto model = model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems);
   ASSERT_TRUE(model.has_value()) << problems.format();

@@ -16,7 +16,7 @@ BoardMap plain_map() {
   return map;
 }
 
-TEST(ExchangePlan, OneWriteAndOneRead) {
+TEST(ExchangePlan, TwoChannelsNeedOneWriteAndOneRead) {
   const ExchangePlan plan = plan_exchange(plain_map(), test::two_fingers(false));
   EXPECT_EQ(plan.writes, (std::vector<WriteStep>{{16, 100, 2, 0}}));
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 2}}));
@@ -24,7 +24,7 @@ TEST(ExchangePlan, OneWriteAndOneRead) {
   EXPECT_EQ(plan.channels[1].displacement, (Slot{0, 1}));
 }
 
-TEST(ExchangePlan, InputsBetweenWiredOnesAreReadAlong) {
+TEST(ExchangePlan, ReadsInputsBetweenWiredInputsInOneRequest) {
   const ExchangePlan plan = plan_exchange(plain_map(), test::two_fingers(true));
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 6}}));
   EXPECT_EQ(plan.channels[1].pressure, (Slot{0, 5}));
@@ -62,7 +62,7 @@ TEST(ExchangePlan, GapsAreReadOnlyAsFarAsTheMapAllows) {
   EXPECT_EQ(plan.channels[0].read_back, (Slot{0, 20}));
 }
 
-TEST(ExchangePlan, NoReadBeyondTheLimitOfTheProtocol) {
+TEST(ExchangePlan, LimitsAReadTo125Registers) {
   BoardMap map = plain_map();
   map.read_back = ReadBack{.registers = {3, 124, 4, RegisterKind::uint16}, .tolerance_raw = 0};
   map.readable_gap = 120;
@@ -71,7 +71,7 @@ TEST(ExchangePlan, NoReadBeyondTheLimitOfTheProtocol) {
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads, (std::vector<ReadStep>{{3, 0, 125}}));
 }
 
-TEST(ExchangePlan, NoRequestBeyondTheLimitOfTheBoardAndNoNumberTorn) {
+TEST(ExchangePlan, LimitsRequestsToTheBoardWithoutSplittingAValue) {
   BoardMap map = plain_map();
   map.max_registers = 3;
   map.inputs.registers.kind = RegisterKind::float32;
@@ -86,7 +86,7 @@ TEST(ExchangePlan, NoRequestBeyondTheLimitOfTheBoardAndNoNumberTorn) {
       << "registers of inputs without wiring are read only if this saves a request";
 }
 
-TEST(ExchangePlan, FunctionsAreNotMixed) {
+TEST(ExchangePlan, ReadsEachFunctionCodeInASeparateRequest) {
   BoardMap map = plain_map();
   map.read_back = ReadBack{.registers = {4, 2, 4, RegisterKind::uint16}, .tolerance_raw = 0};
   map.watchdog.tripped = BoardWatchdog::Tripped{.function = 1, .address = 3, .mask = 1};
@@ -96,7 +96,7 @@ TEST(ExchangePlan, FunctionsAreNotMixed) {
   EXPECT_EQ(plan.sampling_read, 1U);
 }
 
-TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
+TEST(ExchangePlan, ReadsTheClientCountFromTheOutputModule) {
   BoardMap map = plain_map();
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 3, .address = 2};
   const ExchangePlan beside = plan_exchange(map, test::two_fingers(false));
@@ -110,7 +110,7 @@ TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
       << "the register with the number of clients is on another I/O module than the channels that are read";
 }
 
-TEST(ExchangePlan, WritesSplitWhereAnOutputIsNotWired) {
+TEST(ExchangePlan, SplitsWritesAtAnUnusedOutput) {
   std::vector<ChannelWiring> wiring = test::two_fingers(false);
   wiring[0].valve.output = 3;
   wiring[1].valve.output = 0;
@@ -120,7 +120,7 @@ TEST(ExchangePlan, WritesSplitWhereAnOutputIsNotWired) {
   EXPECT_EQ(plan.channels[1].output_word, 0U);
 }
 
-TEST(ExchangePlan, Function6WritesOneByOne) {
+TEST(ExchangePlan, Function6WritesEachRegisterSeparately) {
   BoardMap map = plain_map();
   map.outputs.registers.function = 6;
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).writes,
@@ -135,7 +135,7 @@ TEST(ExchangePlan, Function23SavesATransaction) {
   EXPECT_EQ(describe(plan), "FC23 writes 2 from 100 and reads 2 from 0");
 }
 
-TEST(ExchangePlan, SixteenFingersWithFloats) {
+TEST(ExchangePlan, SixteenChannelsWithFloatsNeedTwoTransactions) {
   BoardMap map = plain_map();
   map.inputs.registers = {.function = 4, .address = 10, .count = 32, .kind = RegisterKind::float32};
   map.outputs.registers = {.function = 16, .address = 200, .count = 16, .kind = RegisterKind::float32};

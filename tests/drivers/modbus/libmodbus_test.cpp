@@ -75,7 +75,7 @@ BoardMap shipped(const std::string& name) {
   return rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name, problems).value();
 }
 
-TEST(Libmodbus, AdamWithFunctions16And4) {
+TEST(Libmodbus, ExchangesWithFunctions16And4) {
   LibmodbusServer server;
   for (int i = 0; i < 6; ++i)
     server.mapping().tab_input_registers[i] = 49151;  // 5 V, as a raw value of 16
@@ -98,7 +98,7 @@ TEST(Libmodbus, AdamWithFunctions16And4) {
   }
 }
 
-TEST(Libmodbus, Function23AndExceptions) {
+TEST(Libmodbus, ExchangesWithFunction23AndReportsAnException) {
   LibmodbusServer server;
   ModbusSettings settings =
       test::on_tcp(server.port(), shipped("softgrip-sim.yaml"), test::two_fingers(false));

@@ -55,7 +55,7 @@ ModbusReply parse(const Bytes& bytes, const ModbusRequest& request) {
   return parse_reply(bytes, request, transaction, unit);
 }
 
-TEST(ModbusReply, RightAnswersAreComplete) {
+TEST(ModbusReply, CorrectResponsesAreComplete) {
   for (const Case& one : cases()) {
     const Bytes bytes = frame(one.pdu);
     const ModbusReply reply = parse(bytes, one.request);
@@ -66,7 +66,7 @@ TEST(ModbusReply, RightAnswersAreComplete) {
   }
 }
 
-TEST(ModbusReply, EveryBeginningOfARightAnswerIsIncomplete) {
+TEST(ModbusReply, ATruncatedResponseIsIncomplete) {
   for (const Case& one : cases()) {
     const Bytes bytes = frame(one.pdu);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -84,7 +84,7 @@ TEST(ModbusReply, EveryBeginningOfARightAnswerIsIncomplete) {
   }
 }
 
-TEST(ModbusReply, EveryByteBehindAnAnswerIsADefect) {
+TEST(ModbusReply, ATrailingByteIsADefect) {
   for (const Case& one : cases()) {
     Bytes bytes = frame(one.pdu);
     bytes.push_back(0);
@@ -99,7 +99,7 @@ TEST(ModbusReply, EveryByteBehindAnAnswerIsADefect) {
 // never accept the response. A response with a changed highest bit of the function code looks like an
 // exception of the wrong length. The test does not change the data, because only the checksum of TCP protects
 // them.
-TEST(ModbusReply, NoBitOutsideTheDataMayFlip) {
+TEST(ModbusReply, AnInvertedBitOutsideTheDataIsADefect) {
   for (const Case& one : cases()) {
     const Bytes right = frame(one.pdu);
     for (std::size_t i = 0; i < right.size() - one.data_size; ++i) {
@@ -113,7 +113,7 @@ TEST(ModbusReply, NoBitOutsideTheDataMayFlip) {
   }
 }
 
-TEST(ModbusReply, EachDefectByItsName) {
+TEST(ModbusReply, DistinguishesTheDefects) {
   const Case one = cases()[2];
   const auto spoiled = [&](std::size_t at, std::uint8_t value) {
     Bytes bytes = frame(one.pdu);
@@ -133,7 +133,7 @@ TEST(ModbusReply, EachDefectByItsName) {
   EXPECT_EQ(parse(other, write.request).defect, ReplyDefect::echo);
 }
 
-TEST(ModbusReply, AWrongHeaderIsNotWaitedOut) {
+TEST(ModbusReply, DetectsAWrongHeaderInATruncatedResponse) {
   const Case one = cases()[2];
   EXPECT_EQ(parse({1, 3}, one.request).defect, ReplyDefect::transaction);
   EXPECT_EQ(parse({1, 2, 0, 7}, one.request).defect, ReplyDefect::protocol);
@@ -141,11 +141,11 @@ TEST(ModbusReply, AWrongHeaderIsNotWaitedOut) {
   EXPECT_EQ(parse({1, 2, 0, 0, 0, 7, 3}, one.request).defect, ReplyDefect::unit);
 }
 
-TEST(ModbusReply, AQuestionThatCannotBeAskedHasNoAnswer) {
+TEST(ModbusReply, AnInvalidRequestHasNoValidResponse) {
   EXPECT_EQ(parse(frame({3, 2, 0, 0}), {.function = 3, .count = 0}).state, State::defective);
 }
 
-TEST(ModbusReply, DataStayInsideTheBytes) {
+TEST(ModbusReply, DataLieWithinTheReceivedBytes) {
   const unsigned seed = 3;
   std::mt19937 random(seed);
   const std::vector<Case> all = cases();

@@ -22,7 +22,7 @@ std::vector<std::uint8_t> pdu_of(const ModbusRequest& request) {
 
 using Bytes = std::vector<std::uint8_t>;
 
-TEST(ModbusRequest, ExamplesOfTheSpecification) {
+TEST(ModbusRequest, MatchesTheExamplesOfTheSpecification) {
   EXPECT_EQ(pdu_of({.function = 1, .address = 0x13, .count = 0x13}), (Bytes{1, 0, 0x13, 0, 0x13}));
   EXPECT_EQ(pdu_of({.function = 2, .address = 0xc4, .count = 0x16}), (Bytes{2, 0, 0xc4, 0, 0x16}));
   EXPECT_EQ(pdu_of({.function = 3, .address = 0x6b, .count = 3}), (Bytes{3, 0, 0x6b, 0, 3}));
@@ -39,7 +39,7 @@ TEST(ModbusRequest, ExamplesOfTheSpecification) {
             (Bytes{0x17, 0, 3, 0, 6, 0, 0x0e, 0, 3, 6, 0, 0xff, 0, 0xff, 0, 0xff}));
 }
 
-TEST(ModbusRequest, WhatNoBoardCanAnswerIsNotSent) {
+TEST(ModbusRequest, RefusesInvalidRequests) {
   Frame frame{};
   const std::vector<std::uint16_t> many(124);
   const auto values = std::span<const std::uint16_t>(many);
@@ -64,7 +64,7 @@ TEST(ModbusRequest, WhatNoBoardCanAnswerIsNotSent) {
   }
 }
 
-TEST(ModbusRequest, TheLargestFitTheFrame) {
+TEST(ModbusRequest, TheLargestRequestsFitIntoAFrame) {
   Frame frame{};
   const std::vector<std::uint16_t> values(123, 0xabcd);
   const auto all = std::span<const std::uint16_t>(values);

@@ -25,7 +25,7 @@ using test::RegisterServer;
 using test::Requests;
 using test::shipped;
 
-TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
+TEST_F(ModbusBoardTest, TheAdamMapUsesTheRegistersOfTheManual) {
   connect(shipped("adam-6024.yaml"));
   server_.set_input(0, adam_raw(3));
   server_.set_input(1, adam_raw(7));
@@ -50,7 +50,7 @@ TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   }
 }
 
-TEST_F(ModbusBoardTest, AThermometerIsEverybodysAndMayFail) {
+TEST_F(ModbusBoardTest, AllChannelsShareATemperatureInput) {
   wiring_ = test::two_fingers_and_a_thermometer();
   connect(shipped("adam-6024.yaml"));
   server_.set_input(2, adam_raw(2.4));
@@ -61,7 +61,7 @@ TEST_F(ModbusBoardTest, AThermometerIsEverybodysAndMayFail) {
   for (const Reading& reading : readings_) EXPECT_TRUE(std::isnan(reading.temperature_c));
 }
 
-TEST_F(ModbusBoardTest, SampledAtIsWhenTheInputsWereAsked) {
+TEST_F(ModbusBoardTest, TheTimestampLiesWithinTheExchange) {
   connect(shipped("adam-6024.yaml"));
   const Nanoseconds before = MonotonicClock().now();
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
@@ -75,7 +75,7 @@ TEST_F(ModbusBoardTest, SampledAtIsWhenTheInputsWereAsked) {
   EXPECT_EQ(readings_[0].sequence, 2U);
 }
 
-TEST_F(ModbusBoardTest, OneTransactionWithFunction23) {
+TEST_F(ModbusBoardTest, Function23NeedsOneTransaction) {
   wiring_ = test::two_fingers(false);
   connect(shipped("softgrip-sim.yaml"));
   const auto put = [this](std::uint16_t address, float volt) {
@@ -105,7 +105,7 @@ TEST_F(ModbusBoardTest, OneTransactionWithFunction23) {
   EXPECT_EQ(server_.take_requests().size(), 1U);
 }
 
-TEST_F(ModbusBoardTest, LowWordFirst) {
+TEST_F(ModbusBoardTest, DecodesFloatsWithTheLowWordFirst) {
   wiring_ = test::two_fingers(false);
   BoardMap map = shipped("softgrip-sim.yaml");
   map.word_order = WordOrder::low_first;
@@ -155,7 +155,7 @@ TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
   EXPECT_NEAR(readings_[1].displacement_mm, 10, 0.001);
 }
 
-TEST_F(ModbusBoardTest, ValidityOfReadings) {
+TEST_F(ModbusBoardTest, DeterminesValidityBySignalErrorCodeAndStatus) {
   connect(shipped("adam-6024.yaml"));
   server_.set_input(0, adam_raw(0.05));  // 0.05 V is below the valid electrical range of the sensor
   server_.set_input(1, adam_raw(9.95));  // 9.95 V is the error code of the sensor
@@ -174,7 +174,7 @@ TEST_F(ModbusBoardTest, ValidityOfReadings) {
   EXPECT_FALSE(std::isnan(readings_[1].pressure_kpa));
 }
 
-TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten) {
+TEST_F(ModbusBoardTest, ACommandOutsideTheRangeIsLimitedAndReported) {
   connect(shipped("adam-6024.yaml"));
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   EXPECT_EQ(exchange(10, 101), BusStatus::write_refused);
@@ -187,7 +187,7 @@ TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten)
       << "a command that equals a limit is permitted: " << board_->detail();
 }
 
-TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
+TEST_F(ModbusBoardTest, ANonFiniteCommandWritesNothing) {
   connect(shipped("adam-6024.yaml"));
   ASSERT_EQ(exchange(10, 20), BusStatus::ok);
   (void)server_.take_requests();
@@ -199,7 +199,7 @@ TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
   EXPECT_TRUE(server_.take_requests().empty());
 }
 
-TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
+TEST_F(ModbusBoardTest, AnExceptionIsReportedWithoutEndingTheSession) {
   connect(shipped("adam-6024.yaml"));
   for (const std::uint8_t function : {std::uint8_t{16}, std::uint8_t{4}}) {
     server_.refuse(function, 2);
@@ -263,7 +263,7 @@ TEST_F(ModbusBoardTest, ConnectingWritesNoOutput) {
   EXPECT_GT(budget.exchange_s, 0);
 }
 
-TEST_F(ModbusBoardTest, LaterSessionsBeginWithTheOutputs) {
+TEST_F(ModbusBoardTest, LaterSessionsWriteTheOutputsFirst) {
   ModbusSettings with_probes = settings(shipped("adam-6024.yaml"));
   with_probes.probes = 3;
   board_ = std::make_unique<ModbusBoard>(with_probes);
@@ -276,7 +276,7 @@ TEST_F(ModbusBoardTest, LaterSessionsBeginWithTheOutputs) {
   EXPECT_EQ(server_.take_requests().front().function, 16);
 }
 
-TEST_F(ModbusBoardTest, Describes) {
+TEST_F(ModbusBoardTest, DescribesModelAddressAndUnit) {
   board_ = std::make_unique<ModbusBoard>(settings(shipped("adam-6024.yaml")));
   EXPECT_EQ(board_->describe(), "ADAM-6024 at 127.0.0.1:" + std::to_string(server_.port()) + " unit 1");
   EXPECT_TRUE(board_->has_watchdog());
@@ -290,7 +290,7 @@ TEST_F(ModbusBoardTest, AWrongNumberOfChannelsIsRefused) {
   EXPECT_TRUE(server_.take_requests().empty());
 }
 
-TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
+TEST_F(ModbusBoardTest, ReportsTheClientCountOfTheBoard) {
   BoardMap map = shipped("adam-6024.yaml");
   connect(map);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
@@ -339,7 +339,7 @@ class WatchdogTest : public ModbusBoardTest {
   BoardMap map_;
 };
 
-TEST_F(WatchdogTest, ATripIsReportedAndNotClearedByExchanging) {
+TEST_F(WatchdogTest, AnExchangeReportsATripWithoutClearingTheTrip) {
   connect(map_);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   trip();
@@ -349,7 +349,7 @@ TEST_F(WatchdogTest, ATripIsReportedAndNotClearedByExchanging) {
   EXPECT_EQ(readings_[0].sequence, 1U);
 }
 
-TEST_F(WatchdogTest, AfterConnectTheFirstCommandsStandBeforeAndAfterTheClearing) {
+TEST_F(WatchdogTest, TheFirstExchangeWritesCommandsBeforeAndAfterClearing) {
   connect(map_);
   trip();
   ASSERT_EQ(exchange(50, 50), BusStatus::ok) << board_->detail();
@@ -374,7 +374,7 @@ TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {
       << "a trip after the first exchange of a session is not cleared";
 }
 
-TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {
+TEST_F(WatchdogTest, EveryExchangeSendsOneWatchdogWrite) {
   map_.watchdog.feed = BoardWatchdog::Feed::feed_write;
   map_.watchdog.feed_write = FixedWrite{.function = 6, .address = 4099, .value = 1};
   connect(map_);
@@ -386,7 +386,7 @@ TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {
   }
 }
 
-TEST_F(WatchdogTest, AHeartbeatChangesWithEveryExchangeAndIsRepeatedUntilItIsConfirmed) {
+TEST_F(WatchdogTest, AHeartbeatAlternatesOnlyAfterAConfirmedWrite) {
   map_.watchdog.feed = BoardWatchdog::Feed::feed_write;
   map_.watchdog.feed_write = FixedWrite{.function = 6, .address = 4099, .value = 7, .alternate = 9};
   connect(map_);
@@ -402,7 +402,7 @@ TEST_F(WatchdogTest, AHeartbeatChangesWithEveryExchangeAndIsRepeatedUntilItIsCon
 }
 
 /// During a watchdog trip, this board responds to writes with an exception, as some bus couplers do.
-TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
+TEST_F(WatchdogTest, DetectsATripByTheFlagIfWritesAreRefused) {
   map_.setup = {{6, 500, 7}};
   connect(map_);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);

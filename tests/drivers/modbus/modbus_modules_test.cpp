@@ -59,7 +59,7 @@ TEST_F(TwoModules, AreOneBoard) {
       << board_->budget().explanation;
 }
 
-TEST_F(TwoModules, OutputsAreReachedThoughTheInputsAreGone) {
+TEST_F(TwoModules, WriteOutputsWithoutTheInputModule) {
   ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
   ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
   inputs_.reset();
@@ -72,7 +72,7 @@ TEST_F(TwoModules, OutputsAreReachedThoughTheInputsAreGone) {
   EXPECT_EQ(server_.holding(1), 0);
 }
 
-TEST_F(TwoModules, WithoutTheOutputsThereIsNoSession) {
+TEST_F(TwoModules, NeedTheOutputModuleForASession) {
   settings_.links[0] = TcpAddress{"127.0.0.1", 1};
   ModbusBoard board(settings_);
   EXPECT_EQ(board.connect(500ms), BusStatus::disconnected);

@@ -18,7 +18,7 @@ using test::RegisterServer;
 using test::Requests;
 using test::shipped;
 
-TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
+TEST_F(ModbusBoardTest, ReportsAnOutputThatDiffersFromTheCommand) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
   connect(map);
@@ -33,7 +33,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
 
 // In this test, another Modbus client writes to one output after the write of the daemon. The daemon then
 // reads the outputs back.
-TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
+TEST_F(ModbusBoardTest, ARefusedExchangeReportsTheDifferingOutputs) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
   connect(map);
@@ -53,7 +53,7 @@ TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
   EXPECT_TRUE(std::isnan(board_->found_kpa(1)));
 }
 
-TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
+TEST_F(ModbusBoardTest, DetectsAWriteOfAnotherClientWithinEightExchanges) {
   connect(shipped("adam-6024.yaml"));
   for (int i = 0; i < 40; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
   int until_noticed = 0;
@@ -74,7 +74,7 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
 
 // This output ignores writes, so its read-back differs from the written value. The driver must not conclude
 // that another client has written to the output.
-TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriting) {
+TEST_F(ModbusBoardTest, AnIgnoredWriteIsNotReportedAsAWriteOfAnotherClient) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
   connect(map);
@@ -88,7 +88,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriti
   }
 }
 
-TEST_F(ModbusBoardTest, WhatWasWrittenByAnExchangeThatFailedAfterwardsIsNotTakenForSomebodyElses) {
+TEST_F(ModbusBoardTest, AWriteOfAFailedExchangeIsNotReportedAsAnotherClient) {
   connect(shipped("adam-6024.yaml"));
   for (int i = 0; i < 9; ++i) {
     for (int good = 0; good < 6; ++good) ASSERT_EQ(exchange(i, i), BusStatus::ok) << board_->detail();
@@ -99,7 +99,7 @@ TEST_F(ModbusBoardTest, WhatWasWrittenByAnExchangeThatFailedAfterwardsIsNotTaken
   }
 }
 
-TEST_F(ModbusBoardTest, SomebodyElseIsToldApartFromARefusedWriteAfterTheFirstGoodExchange) {
+TEST_F(ModbusBoardTest, DistinguishesARefusedWriteFromAWriteOfAnotherClient) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
   connect(map);
@@ -113,7 +113,7 @@ TEST_F(ModbusBoardTest, SomebodyElseIsToldApartFromARefusedWriteAfterTheFirstGoo
       << "this exchange must begin with a read request for the outputs";
 }
 
-TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
+TEST_F(ModbusBoardTest, ReadingFirstNeedsNoAdditionalRequest) {
   connect(shipped("adam-6024.yaml"));
   ASSERT_EQ(exchange(1, 1), BusStatus::ok);
   (void)server_.take_requests();
@@ -129,7 +129,7 @@ TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
   EXPECT_EQ(first, 2);
 }
 
-TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
+TEST_F(ModbusBoardTest, DetectsAnotherClientWithFunction23) {
   wiring_ = test::two_fingers(false);
   connect(shipped("softgrip-sim.yaml"));
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
@@ -148,7 +148,7 @@ TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
 
 // On some boards, the read-back shows the command of the previous exchange. This happens in particular if one
 // request with function code 23 writes and reads.
-TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
+TEST_F(ModbusBoardTest, AcceptsAReadBackLagUpToTheLimitOfTheBoardMap) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {

@@ -123,11 +123,11 @@ TEST(ModbusRtuLink, ReadsRegisters) {
   EXPECT_TRUE(outcome.open_after);
 }
 
-TEST(ModbusRtuLink, NoReplyAtAll) {
+TEST(ModbusRtuLink, AMissingResponseTimesOut) {
   expect_end(ask_once([](ScriptedLine&, const Bytes&) {}), BusStatus::timed_out, "waiting for the reply");
 }
 
-TEST(ModbusRtuLink, ADripFedReplyDoesNotExtendTheDeadline) {
+TEST(ModbusRtuLink, ASlowResponseDoesNotExtendTheDeadline) {
   expect_end(ask_once(
                  [](ScriptedLine& line, const Bytes& request) {
                    Bytes reply = good_reply(request);
@@ -139,13 +139,13 @@ TEST(ModbusRtuLink, ADripFedReplyDoesNotExtendTheDeadline) {
              BusStatus::timed_out, "rest of the reply");
 }
 
-TEST(ModbusRtuLink, APieceAtATimeWithinTheDeadlineIsFine) {
+TEST(ModbusRtuLink, AcceptsAResponseInPiecesWithinTheDeadline) {
   const Outcome outcome =
       ask_once([](ScriptedLine& line, const Bytes& request) { line.drip(good_reply(request), 2ms); });
   EXPECT_EQ(outcome.status, BusStatus::ok) << outcome.detail;
 }
 
-TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
+TEST(ModbusRtuLink, ALateResponseIsNotUsedForALaterRequest) {
   expect_end(ask_once(
                  [](ScriptedLine& line, const Bytes& request) {
                    line.wait(110ms);
@@ -159,7 +159,7 @@ TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
              BusStatus::timed_out, "waiting for the reply");
 }
 
-TEST(ModbusRtuLink, ARepeatedReplyEndsTheSessionBeforeTheNextQuestion) {
+TEST(ModbusRtuLink, ADuplicateResponseEndsTheSessionAtTheNextRequest) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
     self.send(good_reply(request));
     if (index == 0) {
@@ -176,7 +176,7 @@ TEST(ModbusRtuLink, ARepeatedReplyEndsTheSessionBeforeTheNextQuestion) {
   EXPECT_FALSE(link.is_open());
 }
 
-TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
+TEST(ModbusRtuLink, RefusesResponsesThatDoNotMatchTheRequest) {
   const auto changed = [](std::size_t at, std::uint8_t value) {
     return [at, value](ScriptedLine& line, const Bytes& request) {
       Bytes reply = good_reply(request);
@@ -225,7 +225,7 @@ TEST(ModbusRtuLink, StrayBytesAreThrownAway) {
   }
 }
 
-TEST(ModbusRtuLink, AsManyBytesAsAnAnswerHasAreNoStrayBytes) {
+TEST(ModbusRtuLink, FiveAdditionalBytesAreADefect) {
   expect_end(ask_once(
                  [](ScriptedLine& line, const Bytes& request) {
                    Bytes bytes(5, 0);
@@ -236,7 +236,7 @@ TEST(ModbusRtuLink, AsManyBytesAsAnAnswerHasAreNoStrayBytes) {
              BusStatus::bad_reply, "unit");
 }
 
-TEST(ModbusRtuLink, StrayBytesBetweenTwoQuestionsAreThrownAway) {
+TEST(ModbusRtuLink, StrayBytesBetweenTwoRequestsAreIgnored) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t) {
     self.send(good_reply(request));
     self.wait(20ms);
@@ -251,7 +251,7 @@ TEST(ModbusRtuLink, StrayBytesBetweenTwoQuestionsAreThrownAway) {
   }
 }
 
-TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
+TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondResponseIgnored) {
   for (const bool lost : {true, false}) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
@@ -277,7 +277,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
 }
 
 // A module may send a message when it starts. The link must not interpret this message as a response.
-TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
+TEST(ModbusRtuLink, SendsNothingBeforeTheSettlingTimeEnds) {
   std::atomic<Nanoseconds> first_request{0};
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
     if (index == 0) first_request = now();
@@ -294,7 +294,7 @@ TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   EXPECT_GE(first_request - before, 200'000'000);
 }
 
-TEST(ModbusRtuLink, AnAdapterThatEchoesIsToldOf) {
+TEST(ModbusRtuLink, RemovesTheEchoAndReportsACorruptedEcho) {
   SerialLine settings = line_at("");
   settings.echo = true;
   const Outcome outcome = ask_once(
@@ -323,7 +323,7 @@ TEST(ModbusRtuLink, ExceptionsKeepTheSession) {
   EXPECT_NE(outcome.detail.find("exception 2"), std::string::npos) << outcome.detail;
 }
 
-TEST(ModbusRtuLink, SilenceIsKeptBetweenQuestions) {
+TEST(ModbusRtuLink, KeepsTheSilentIntervalBetweenRequests) {
   ScriptedLine line(
       [](ScriptedLine& self, const Bytes& request, std::size_t) { self.send(good_reply(request)); });
   SerialLine settings = line_at(line.device());
@@ -340,7 +340,7 @@ TEST(ModbusRtuLink, SilenceIsKeptBetweenQuestions) {
   }
 }
 
-TEST(ModbusRtuLink, AnAdapterThatIsPulledOutIsFoundAgainUnderItsName) {
+TEST(ModbusRtuLink, ReconnectsToAnAdapterWithTheSameName) {
   const std::string name = (std::filesystem::temp_directory_path() / "softgrip_rtu_link_name").string();
   const auto behave = [](ScriptedLine& self, const Bytes& request, std::size_t) {
     self.send(good_reply(request));
@@ -359,7 +359,7 @@ TEST(ModbusRtuLink, AnAdapterThatIsPulledOutIsFoundAgainUnderItsName) {
   EXPECT_TRUE(right(link));
 }
 
-TEST(ModbusRtuLink, WhatIsNoSerialLine) {
+TEST(ModbusRtuLink, ReportsADeviceThatIsNoSerialLine) {
   const std::string file = (std::filesystem::temp_directory_path() / "softgrip_no_tty").string();
   std::ofstream(file) << "x";
   for (const auto& [device, why] :
@@ -371,7 +371,7 @@ TEST(ModbusRtuLink, WhatIsNoSerialLine) {
   std::filesystem::remove(file);
 }
 
-TEST(ModbusRtuLink, ALineHasOneMaster) {
+TEST(ModbusRtuLink, RefusesASecondClientOnTheSameLine) {
   ScriptedLine line(
       [](ScriptedLine& self, const Bytes& request, std::size_t) { self.send(good_reply(request)); });
   ModbusRtuLink first(line_at(line.device()));
@@ -385,7 +385,7 @@ TEST(ModbusRtuLink, ALineHasOneMaster) {
 
 /// Checks the duration that the link calculates for an exchange. This exchange writes one register and reads
 /// one register. Its frames have 31 bytes in total.
-TEST(ModbusRtuLink, TheCostAddsUp) {
+TEST(ModbusRtuLink, TheExchangeTimeIncludesBytesSilencesAndLatencies) {
   const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // function codes 6 and 3, each for one register
   const auto cost_ms = [&](std::uint32_t baud) {
     return 1e3 * ModbusRtuLink(line_at("/dev/x", baud)).cost(pair, "plan").exchange_s;
@@ -404,7 +404,7 @@ TEST(ModbusRtuLink, TheCostAddsUp) {
       "yet)");
 }
 
-TEST(SerialPort, CharactersAndFormats) {
+TEST(SerialPort, CharacterTimeAndSilenceFollowFromTheFormat) {
   SerialLine line = line_at("x", 9600);
   EXPECT_DOUBLE_EQ(character_s(line), 10.0 / 9600);
   EXPECT_DOUBLE_EQ(silence_s(line), 35.0 / 9600);

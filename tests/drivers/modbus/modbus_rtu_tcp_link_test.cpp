@@ -23,7 +23,7 @@ TcpAddress rtu_at(std::uint16_t port) {
   return {.host = "127.0.0.1", .port = port, .rtu_framing = true, .silence_s = 0.004};
 }
 
-TEST(ModbusRtuTcpLink, AConnectionThatIsClosedBeforeItsFirstAnswerIsNamed) {
+TEST(ModbusRtuTcpLink, ReportsAConnectionClosedBeforeTheFirstResponse) {
   // The server expects TCP frames. It interprets the RTU frame as the beginning of a longer TCP frame and
   // waits for more bytes until the test stops it.
   auto server = std::make_unique<test::ScriptedServer>([](test::Peer&, const test::Bytes&, std::size_t) {});
@@ -36,7 +36,7 @@ TEST(ModbusRtuTcpLink, AConnectionThatIsClosedBeforeItsFirstAnswerIsNamed) {
   EXPECT_NE(std::string(link.detail()).find("refused"), std::string::npos) << link.detail();
 }
 
-TEST(ModbusRtuTcpLink, TheCostHasTheSilences) {
+TEST(ModbusRtuTcpLink, TheExchangeTimeIncludesTheSilentIntervals) {
   const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};
   const ModbusRtuTcpLink link(rtu_at(1));
   const Board::Budget cost = link.cost(pair, "plan");
@@ -45,7 +45,7 @@ TEST(ModbusRtuTcpLink, TheCostHasTheSilences) {
   EXPECT_EQ(link.describe(), "127.0.0.1:1 (RTU frames)");
 }
 
-TEST(TcpSocket, WhatIsNoConnectionSaysWhy) {
+TEST(TcpSocket, ReportsWhyAConnectionFails) {
   EXPECT_STREQ(connect_tcp({.host = "board.example", .port = 502}, monotonic_now() + generous).why,
                "not a numeric address");
   EXPECT_EQ(connect_tcp({.host = "127.0.0.1", .port = 1}, monotonic_now() + generous).status,

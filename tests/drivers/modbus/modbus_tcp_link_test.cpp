@@ -126,7 +126,7 @@ TEST(ModbusTcpLink, ReadsRegisters) {
   EXPECT_TRUE(outcome.open_after);
 }
 
-TEST(ModbusTcpLink, LateReplyTimesOutAndIsNeverTakenForALaterAnswer) {
+TEST(ModbusTcpLink, ALateResponseTimesOutAndIsNotUsedForALaterRequest) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     peer.wait(750ms);
     answer_well(peer, request);
@@ -135,7 +135,7 @@ TEST(ModbusTcpLink, LateReplyTimesOutAndIsNeverTakenForALaterAnswer) {
   EXPECT_GE(outcome.took, deadline);
 }
 
-TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
+TEST(ModbusTcpLink, ASlowResponseDoesNotExtendTheDeadline) {
   const ModbusRequest large{.function = 3, .address = 0, .count = 125};
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
@@ -146,7 +146,7 @@ TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
 }
 
-TEST(ModbusTcpLink, ReplyInPiecesWithinTheDeadlineIsFine) {
+TEST(ModbusTcpLink, AcceptsAResponseInPiecesWithinTheDeadline) {
   const Outcome outcome =
       ask_once([](Peer& peer,
                   const Bytes& request) { peer.drip(test::registers_reply(request, register_value), 1ms); },
@@ -154,50 +154,50 @@ TEST(ModbusTcpLink, ReplyInPiecesWithinTheDeadlineIsFine) {
   EXPECT_EQ(outcome.status, BusStatus::ok) << outcome.detail;
 }
 
-TEST(ModbusTcpLink, WrongUnitId) {
+TEST(ModbusTcpLink, RefusesAResponseWithAWrongUnitId) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[6] = 2; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, WrongTransactionId) {
+TEST(ModbusTcpLink, RefusesAResponseWithAWrongTransactionId) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[1] ^= 1; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, WrongProtocolId) {
+TEST(ModbusTcpLink, RefusesAResponseWithAWrongProtocolId) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[3] = 1; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, LengthTooLarge) {
+TEST(ModbusTcpLink, RefusesALengthThatIsTooLarge) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { ++reply[5]; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, LengthTooSmall) {
+TEST(ModbusTcpLink, RefusesALengthThatIsTooSmall) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { --reply[5]; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, LengthOfAnExceptionOnAnOrdinaryReply) {
+TEST(ModbusTcpLink, RefusesTheLengthOfAnExceptionInARegularResponse) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[5] = 3; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, FewerRegistersThanAsked) {
+TEST(ModbusTcpLink, RefusesFewerRegistersThanRequested) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     peer.send(test::frame_for(request, {3, 2, 0, 1}));
   });
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, ByteCountContradictsTheLength) {
+TEST(ModbusTcpLink, RefusesAByteCountThatContradictsTheLength) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[8] = 6; }), BusStatus::bad_reply, slack);
 }
 
 // Like libmodbus, the session waits for the number of bytes that the response announces. At the deadline, it
 // evaluates the bytes that have arrived.
-TEST(ModbusTcpLink, ByteCountOfMoreThanThereIs) {
+TEST(ModbusTcpLink, RefusesAByteCountAboveTheReceivedBytes) {
   const Outcome outcome = ask_spoiled([](Bytes& reply) { reply[8] = 200; });
   expect_poisoned(outcome, BusStatus::bad_reply, deadline + slack);
   EXPECT_NE(outcome.detail.find("byte count"), std::string::npos) << outcome.detail;
 }
 
-TEST(ModbusTcpLink, AnotherFunctionAnswered) {
+TEST(ModbusTcpLink, RefusesAResponseOfAnotherFunction) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[7] = 4; }), BusStatus::bad_reply, slack);
 }
 
@@ -206,11 +206,11 @@ TEST(ModbusTcpLink, ShortReplyTimesOut) {
                   deadline + slack);
 }
 
-TEST(ModbusTcpLink, BytesBehindTheReply) {
+TEST(ModbusTcpLink, RefusesTrailingBytes) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply.push_back(0); }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, FloodOfBytes) {
+TEST(ModbusTcpLink, RefusesOneMillionArbitraryBytes) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) {
     peer.send(Bytes(1'000'000, 0x5a));
     peer.hang_up();
@@ -218,7 +218,7 @@ TEST(ModbusTcpLink, FloodOfBytes) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, FloodBehindAGoodReply) {
+TEST(ModbusTcpLink, RefusesManyBytesAfterACorrectResponse) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
     reply.resize(500'000, 0);
@@ -228,19 +228,19 @@ TEST(ModbusTcpLink, FloodBehindAGoodReply) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, NoReplyAtAll) {
+TEST(ModbusTcpLink, AMissingResponseTimesOut) {
   const Outcome outcome = ask_once([](Peer&, const Bytes&) {});
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
   EXPECT_GE(outcome.took, deadline);
 }
 
-TEST(ModbusTcpLink, HungUpBeforeTheReply) {
+TEST(ModbusTcpLink, ReportsAConnectionClosedBeforeTheResponse) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.hang_up(); });
   expect_poisoned(outcome, BusStatus::closed_at_once, slack);
   EXPECT_NE(outcome.detail.find("closed it before the first response"), std::string::npos) << outcome.detail;
 }
 
-TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
+TEST(ModbusTcpLink, ReportsAConnectionClosedDuringTheResponse) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
     reply.resize(reply.size() / 2);
@@ -250,12 +250,12 @@ TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
   expect_poisoned(outcome, BusStatus::closed_at_once, slack);
 }
 
-TEST(ModbusTcpLink, ResetByThePeer) {
+TEST(ModbusTcpLink, ReportsAConnectionResetByTheServer) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.reset(); });
   expect_poisoned(outcome, BusStatus::closed_at_once, slack);
 }
 
-TEST(ModbusTcpLink, AnEndBehindAnAnswerIsNoConnectionThatWasClosedAtOnce) {
+TEST(ModbusTcpLink, DistinguishesAnImmediateCloseFromALaterDisconnection) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
     if (index == 0) {
       answer_well(peer, request);
@@ -321,7 +321,7 @@ TcpAddress settling(std::uint16_t port, double settle_s) {
   return {.host = "127.0.0.1", .port = port, .habits = {.settle_s = settle_s}};
 }
 
-TEST(ModbusTcpLink, NothingIsSentBeforeTheSettleTimeIsOver) {
+TEST(ModbusTcpLink, SendsNothingBeforeTheSettlingTimeEnds) {
   std::atomic<Nanoseconds> first_request{0};
   ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
     if (index == 0) first_request = now();
@@ -346,7 +346,7 @@ TEST(ModbusTcpLink, ASettleTimeDoesNotExtendTheDeadline) {
   EXPECT_FALSE(session.is_open());
 }
 
-TEST(ModbusTcpLink, AConnectionThatIsClosedWhileItSettlesIsNotWaitedFor) {
+TEST(ModbusTcpLink, DetectsAConnectionClosedDuringTheSettlingTime) {
   const Greeter server("", true);
   ModbusTcpLink session(settling(server.port, 30));
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
@@ -355,7 +355,7 @@ TEST(ModbusTcpLink, AConnectionThatIsClosedWhileItSettlesIsNotWaitedFor) {
   EXPECT_LT(now() - before, generous / 2);
 }
 
-TEST(ModbusTcpLink, WhatComesWhileItSettlesAnswersNothing) {
+TEST(ModbusTcpLink, DiscardsBytesReceivedDuringTheSettlingTime) {
   const Greeter server("ready\r\n", false);
   ModbusTcpLink session(settling(server.port, 0.2));
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
@@ -393,14 +393,14 @@ TEST(ModbusTcpLink, ExceptionsKeepTheSession) {
   }
 }
 
-TEST(ModbusTcpLink, ExceptionOfAnotherFunction) {
+TEST(ModbusTcpLink, RefusesAnExceptionOfAnotherFunction) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     peer.send(test::frame_for(request, {0x90, 2}));
   });
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
+TEST(ModbusTcpLink, RefusesAWriteConfirmationForAnotherAddress) {
   const std::uint16_t value = 77;
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
@@ -413,7 +413,7 @@ TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
 // If a server sends one response twice, a careless client assigns every later response to the wrong request.
 // This server sends some responses twice, at random. The copy follows immediately or later. Each request
 // reads different registers, so the test detects a wrong assignment.
-TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
+TEST(ModbusTcpLink, DuplicateResponsesAreNeverAssignedToOtherRequests) {
   const unsigned seed = 20250411;
   std::mt19937 random(seed);
   ScriptedServer server([&random](Peer& peer, const Bytes& request, std::size_t) {
@@ -447,7 +447,7 @@ TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
   EXPECT_GT(bad, 50U) << "too few duplicates reached the client for a valid test";
 }
 
-TEST(ModbusTcpLink, RefusedConnection) {
+TEST(ModbusTcpLink, ReportsARefusedConnection) {
   std::uint16_t port = 0;
   {
     port = ScriptedServer([](Peer&, const Bytes&, std::size_t) {}).port();
@@ -467,7 +467,7 @@ TEST(ModbusTcpLink, NamesAreNotResolved) {
 
 // The queue of this listener is full. The kernel then drops the first packet of every new connection, so the
 // attempt to connect must time out.
-TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
+TEST(ModbusTcpLink, ConnectingTimesOutIfTheServerDoesNotRespond) {
   std::uint16_t port = 0;
   const int listener = listening(0, port);
   std::vector<std::unique_ptr<ModbusTcpLink>> queue;
@@ -506,7 +506,7 @@ TcpAddress repeating(std::uint16_t port, bool numbered = true) {
 
 // The link may send a request a second time if the response is missing. The second frame must be identical,
 // so that it writes the same output values.
-TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
+TEST(ModbusTcpLink, RepeatsALostRequestInTheSameSession) {
   std::vector<Bytes> asked;
   ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
     asked.push_back(request);
@@ -544,7 +544,7 @@ void answer_late_once(Peer& peer, const Bytes& request, std::size_t index, bool 
   peer.send(reply);
 }
 
-TEST(ModbusTcpLink, ASecondAnswerToARepeatedRequestIsNeverTakenForALaterOne) {
+TEST(ModbusTcpLink, ASecondResponseIsNotUsedForALaterRequest) {
   for (const bool numbered : {true, false}) {
     ScriptedServer server([numbered](Peer& peer, const Bytes& request, std::size_t index) {
       answer_late_once(peer, request, index, numbered);
@@ -560,7 +560,7 @@ TEST(ModbusTcpLink, ASecondAnswerToARepeatedRequestIsNeverTakenForALaterOne) {
   }
 }
 
-TEST(ModbusTcpLink, AnswersWithoutTheTransactionIdAreTakenOnlyWhereThatIsAccepted) {
+TEST(ModbusTcpLink, AcceptsAMissingTransactionIdOnlyIfConfigured) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
     Bytes reply = test::registers_reply(request, register_value);
     test::set_word(reply, 0, 0);
@@ -595,7 +595,7 @@ TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
 // The test opens files until new descriptors have numbers above 1024. Such a descriptor does not fit into the
 // fd_set with which libmodbus waits. A link that was created earlier must use its lower descriptor in all
 // later sessions.
-TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
+TEST(ModbusTcpLink, OnlyLinksCreatedBelowDescriptor1024CanConnect) {
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
   const rlimit before = limit;

@@ -153,7 +153,7 @@ TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
   EXPECT_EQ(readings_[1].validity, model::Validity::valid);
 }
 
-TEST_F(PymodbusTest, EveryStepOfTheOutputArrivesAsItself) {
+TEST_F(PymodbusTest, TransmitsRawOutputValuesExactly) {
   settings_.modules[0].map.read_back.reset();
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
@@ -165,7 +165,7 @@ TEST_F(PymodbusTest, EveryStepOfTheOutputArrivesAsItself) {
   }
 }
 
-TEST_F(PymodbusTest, ReadBackThatDiffersIsRefused) {
+TEST_F(PymodbusTest, ReportsADifferingReadBack) {
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   server_.set("input", 10, {1024, 3071});
@@ -175,7 +175,7 @@ TEST_F(PymodbusTest, ReadBackThatDiffersIsRefused) {
   EXPECT_EQ(board.exchange(std::array{25.0, 75.0}, readings_, generous), BusStatus::write_refused);
 }
 
-TEST_F(PymodbusTest, Function23) {
+TEST_F(PymodbusTest, ExchangesWithFunction23) {
   document::Problems problems;
   const auto map = rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/softgrip-sim.yaml", problems);
   ASSERT_TRUE(map.has_value()) << problems.format();
@@ -193,20 +193,20 @@ TEST_F(PymodbusTest, Function23) {
   EXPECT_DOUBLE_EQ(readings_[0].pressure_kpa, 10);
 }
 
-TEST_F(PymodbusTest, AddressesItDoesNotHaveAreExceptions) {
+TEST_F(PymodbusTest, ReportsAnExceptionForAnInvalidAddress) {
   settings_.modules[0].map.inputs.registers.address = 65533;
   ModbusBoard board(settings_);
   EXPECT_EQ(board.connect(generous), BusStatus::exception);
   EXPECT_NE(std::string(board.detail()).find("data address"), std::string::npos) << board.detail();
 }
 
-TEST_F(PymodbusTest, AnotherUnitIdGetsNoAnswer) {
+TEST_F(PymodbusTest, AnotherUnitIdTimesOut) {
   settings_.modules[0].unit = 9;
   ModbusBoard board(settings_);
   EXPECT_EQ(board.connect(300ms), BusStatus::timed_out);
 }
 
-TEST_F(PymodbusTest, AServerThatDies) {
+TEST_F(PymodbusTest, ReportsAServerThatTerminates) {
   settings_.modules[0].map.read_back.reset();
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
@@ -257,7 +257,7 @@ TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
       << "a serial line can have only one Modbus client";
 }
 
-TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
+TEST(PymodbusOnALine, AMissingUnitTimesOutAndReleasesTheLine) {
   PymodbusBoard server("serial");
   SerialLine line;
   line.device = server.device();

@@ -30,7 +30,7 @@ ModbusReply parse(const Bytes& bytes, const ModbusRequest& request, std::uint8_t
 
 /// Compares computed checksums with published ones: those in the Modbus specification (serial line, V1.02,
 /// section 6.2.2) and those in the manuals of vendors.
-TEST(RtuFrame, ChecksumsOfOthers) {
+TEST(RtuFrame, ChecksumsMatchPublishedExamples) {
   EXPECT_EQ(crc16(Bytes{0x02, 0x07}), 0x1241);
   const std::vector<std::uint16_t> one_milliampere{1000};
   EXPECT_EQ(built({.function = 6, .address = 0, .values = one_milliampere}, 1),
@@ -39,7 +39,7 @@ TEST(RtuFrame, ChecksumsOfOthers) {
             (Bytes{0x01, 0x04, 0x00, 0x00, 0x00, 0x08, 0xf1, 0xcc}));
 }
 
-TEST(RtuFrame, RightAnswersAreCompleteAndTheirBeginningsAreNot) {
+TEST(RtuFrame, OnlyACompleteCorrectResponseIsComplete) {
   const std::vector<std::uint16_t> two{7, 8};
   struct Case {
     ModbusRequest request;
@@ -66,7 +66,7 @@ TEST(RtuFrame, RightAnswersAreCompleteAndTheirBeginningsAreNot) {
   }
 }
 
-TEST(RtuFrame, ExceptionsAreFiveBytes) {
+TEST(RtuFrame, ParsesAnExceptionOfFiveBytes) {
   const ModbusRequest request{.function = 4, .address = 0, .count = 8};
   const Bytes whole = with_crc({1, 0x84, 2});
   const ModbusReply reply = parse(whole, request);
@@ -84,7 +84,7 @@ TEST(RtuFrame, AnySingleBitThatFlipsIsFound) {
   }
 }
 
-TEST(RtuFrame, AnotherUnitAndTheLinesOwnEcho) {
+TEST(RtuFrame, DetectsAnotherUnitAndTheEchoOfTheRequest) {
   const ModbusRequest read{.function = 3, .address = 0x105, .count = 4};
   EXPECT_EQ(parse(with_crc({2, 3, 8, 1, 2, 3, 4, 5, 6, 7, 8}), read).defect, ReplyDefect::unit);
   EXPECT_EQ(parse(built(read, 1), read).defect, ReplyDefect::own_echo);
@@ -93,7 +93,7 @@ TEST(RtuFrame, AnotherUnitAndTheLinesOwnEcho) {
   EXPECT_EQ(parse(built(write, 1), write).defect, ReplyDefect::own_echo);
 }
 
-TEST(RtuFrame, NoiseIsNeverAnAnswer) {
+TEST(RtuFrame, AcceptsNoiseOnlyAtTheRateOfTheChecksum) {
   constexpr unsigned seed = 20261120;
   std::mt19937 random(seed);
   const ModbusRequest request{.function = 3, .address = 5, .count = 2};

@@ -43,7 +43,7 @@ class SerialDevice : public testing::Test {
   const fs::path root_ = scratch_.path();
 };
 
-TEST_F(SerialDevice, ANameOfTwoAdaptersIsRefusedWithBothAndTheirPorts) {
+TEST_F(SerialDevice, RefusesAnAmbiguousNameAndListsBothAdapters) {
   plug("ttyUSB0", "c188:0", "pci-0000:00:14.0-usb-0:1:1.0-port0", by_id);
   EXPECT_FALSE(unclear(by_id)) << "with one adapter the name is unambiguous";
   plug("ttyUSB1", "c188:1", "pci-0000:00:14.0-usb-0:2:1.0-port0", by_id);
@@ -63,14 +63,14 @@ TEST_F(SerialDevice, ANameOfTwoAdaptersIsRefusedWithBothAndTheirPorts) {
   EXPECT_TRUE(unclear("/dev/serial/../serial/by-id/usb-1a86_USB_Serial-if00-port0"));
 }
 
-TEST_F(SerialDevice, AnAdapterThatWasPulledOutDoesNotCount) {
+TEST_F(SerialDevice, IgnoresADisconnectedAdapter) {
   plug("ttyUSB0", "c188:0", "a", by_id);
   plug("ttyUSB1", "c188:1", "b", by_id);
   fs::remove(at("/dev/ttyUSB0"));
   EXPECT_FALSE(unclear(by_id));
 }
 
-TEST_F(SerialDevice, OneThatIsNotThereIsSaidWithThoseThatAre) {
+TEST_F(SerialDevice, ReportsAMissingDeviceAndListsTheExistingOnes) {
   plug("ttyUSB0", "c188:0", "a", by_id);
   const auto absent = unclear("/dev/serial/by-id/usb-FTDI_other");
   ASSERT_TRUE(absent);
@@ -82,7 +82,7 @@ TEST_F(SerialDevice, OneThatIsNotThereIsSaidWithThoseThatAre) {
   EXPECT_EQ(unclear(by_id)->hint, "no serial device is there");
 }
 
-TEST_F(SerialDevice, OnlyNamesInDevAreJudged) {
+TEST_F(SerialDevice, ChecksOnlyPathsInDev) {
   EXPECT_FALSE(unclear("/tmp/softgrip-line"));
 }
 

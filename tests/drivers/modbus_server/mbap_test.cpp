@@ -7,7 +7,7 @@ namespace {
 
 const Bytes read_four{0x00, 0x07, 0x00, 0x00, 0x00, 0x06, 0x01, 0x03, 0x00, 0x00, 0x00, 0x04};
 
-TEST(RequestStream, CutsOneRequestWhateverTheChunks) {
+TEST(RequestStream, AssemblesARequestFromChunksOfAnySize) {
   for (std::size_t chunk = 1; chunk <= read_four.size(); ++chunk) {
     RequestStream stream;
     std::optional<Request> request;
@@ -27,7 +27,7 @@ TEST(RequestStream, CutsOneRequestWhateverTheChunks) {
   }
 }
 
-TEST(RequestStream, CutsRequestsThatCameTogether) {
+TEST(RequestStream, SeparatesTwoRequestsInOneChunk) {
   Bytes both = read_four;
   both.insert(both.end(), read_four.begin(), read_four.end());
   both[read_four.size() + 1] = 8;
@@ -38,7 +38,7 @@ TEST(RequestStream, CutsRequestsThatCameTogether) {
   EXPECT_FALSE(stream.next());
 }
 
-TEST(RequestStream, BreaksOnAHeaderThatMakesNoSense) {
+TEST(RequestStream, RefusesAnInvalidHeader) {
   const auto broken_by = [](std::size_t position, std::uint8_t value) {
     Bytes bytes = read_four;
     bytes[position] = value;
@@ -63,14 +63,14 @@ TEST(RequestStream, AcceptsTheLongestFrameAndNotMore) {
   }
 }
 
-TEST(RequestStream, DoesNotKeepAnEndlessFlood) {
+TEST(RequestStream, LimitsTheStoredBytes) {
   RequestStream stream;
   const Bytes silence(10'000, 0);
   for (int i = 0; i < 3 && !stream.broken(); ++i) stream.append(silence);
   EXPECT_TRUE(stream.broken());
 }
 
-TEST(Frame, IsWhatTheStreamReads) {
+TEST(Frame, AWrittenFrameIsParsedCorrectly) {
   RequestStream stream;
   stream.append(frame_on(Wire::tcp, 0xabcd, 17, Bytes{0x04, 0x00, 0x01, 0x00, 0x02}));
   const auto request = stream.next();

@@ -44,7 +44,7 @@ TEST_F(RegistersTest, ReadsHoldingAndInputRegisters) {
   EXPECT_EQ(ask({0x01, 0, 5, 0, 1}), (Bytes{0x01, 1, 1}));
 }
 
-TEST_F(RegistersTest, WritesOneAndSeveral) {
+TEST_F(RegistersTest, WritesOneOrSeveralRegisters) {
   EXPECT_EQ(ask({0x06, 0, 2, 0xab, 0xcd}), (Bytes{0x06, 0, 2, 0xab, 0xcd}));
   EXPECT_EQ(registers.holding(2), 0xabcd);
   EXPECT_EQ(ask({0x10, 0, 2, 0, 2, 4, 0, 1, 0, 2}), (Bytes{0x10, 0, 2, 0, 2}));
@@ -54,7 +54,7 @@ TEST_F(RegistersTest, WritesOneAndSeveral) {
   EXPECT_FALSE(registers.coil(5));
 }
 
-TEST_F(RegistersTest, EitherReadFunctionFindsWhatOnlyOneTableHas) {
+TEST_F(RegistersTest, BothReadFunctionsReadAnUnambiguousAddress) {
   EXPECT_EQ(ask({0x04, 0, 0, 0, 1}), (Bytes{0x04, 2, 0x12, 0x34}));
   EXPECT_EQ(ask({0x03, 0, 10, 0, 2}), (Bytes{0x03, 4, 0, 7, 0, 8}));
   registers.define_input(0, 0x5555);
@@ -63,11 +63,11 @@ TEST_F(RegistersTest, EitherReadFunctionFindsWhatOnlyOneTableHas) {
   EXPECT_EQ(ask({0x03, 0, 0, 0, 1}), (Bytes{0x03, 2, 0x12, 0x34}));
 }
 
-TEST_F(RegistersTest, ReadWriteWritesFirst) {
+TEST_F(RegistersTest, Function23WritesBeforeReading) {
   EXPECT_EQ(ask({0x17, 0, 2, 0, 1, 0, 2, 0, 1, 2, 0x55, 0x66}), (Bytes{0x17, 2, 0x55, 0x66}));
 }
 
-TEST_F(RegistersTest, RefusesAddressesThatAreNotThere) {
+TEST_F(RegistersTest, RefusesUndefinedAndReadOnlyAddresses) {
   EXPECT_EQ(ask({0x03, 0, 3, 0, 2}), (Bytes{0x83, illegal_address}))
       << "the requested range exceeds the register table";
   EXPECT_EQ(ask({0x03, 0xff, 0xff, 0, 2}), (Bytes{0x83, illegal_address}))
@@ -97,7 +97,7 @@ TEST_F(RegistersTest, RefusesFunctionsThatTheBoardDoesNotHave) {
   EXPECT_EQ(bare.answer(Bytes{0x03, 0, 0, 0, 1}).pdu, (Bytes{0x83, 1}));
 }
 
-TEST_F(RegistersTest, SaysWhetherItWrote) {
+TEST_F(RegistersTest, ReportsSuccessfulWrites) {
   EXPECT_TRUE(registers.answer(Bytes{0x06, 0, 2, 0, 0}).wrote);
   EXPECT_FALSE(registers.answer(Bytes{0x06, 0, 0, 0, 0}).wrote);
   EXPECT_FALSE(registers.answer(Bytes{0x03, 0, 0, 0, 1}).wrote);

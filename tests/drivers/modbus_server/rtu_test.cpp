@@ -15,7 +15,7 @@ Bytes read_request(std::uint8_t unit = 1) {
   return frame_on(Wire::rtu, 0, unit, Bytes{4, 0, 0, 0, 8});
 }
 
-TEST(RtuRequestStream, CutsRequestsByTheirLength) {
+TEST(RtuRequestStream, SeparatesRequestsByLength) {
   const std::vector<Bytes> pdus{{4, 0, 0, 0, 8},
                                 {5, 0, 1, 0xff, 0},
                                 {6, 0, 1, 0, 7},
@@ -38,7 +38,7 @@ TEST(RtuRequestStream, CutsRequestsByTheirLength) {
   EXPECT_EQ(found, pdus);
 }
 
-TEST(RtuRequestStream, AFunctionThatNoBoardHasIsStillAQuestion) {
+TEST(RtuRequestStream, ReturnsARequestWithAnUnknownFunction) {
   RtuRequestStream stream;
   stream.append(frame_on(Wire::rtu, 0, 1, Bytes{43, 14, 1, 0}), start);
   const auto request = stream.next();
@@ -46,7 +46,7 @@ TEST(RtuRequestStream, AFunctionThatNoBoardHasIsStillAQuestion) {
   EXPECT_EQ(request->pdu[0], 43);
 }
 
-TEST(RtuRequestStream, AWrongChecksumIsSilence) {
+TEST(RtuRequestStream, IgnoresARequestWithAWrongChecksum) {
   RtuRequestStream stream;
   Bytes damaged = read_request();
   damaged[3] = 1;
@@ -56,7 +56,7 @@ TEST(RtuRequestStream, AWrongChecksumIsSilence) {
   EXPECT_TRUE(stream.next().has_value()) << "the next request is received";
 }
 
-TEST(RtuRequestStream, WhatWasBegunAndNotEndedIsForgotten) {
+TEST(RtuRequestStream, DiscardsAnIncompleteRequestAfterASilence) {
   RtuRequestStream stream;
   Bytes begun = read_request();
   begun.resize(5);
@@ -66,7 +66,7 @@ TEST(RtuRequestStream, WhatWasBegunAndNotEndedIsForgotten) {
   EXPECT_TRUE(stream.next().has_value());
 }
 
-TEST(RtuRequestStream, NoiseNeverHarms) {
+TEST(RtuRequestStream, ReceivesARequestAfterNoise) {
   constexpr unsigned seed = 7;
   std::mt19937 random(seed);
   RtuRequestStream stream;

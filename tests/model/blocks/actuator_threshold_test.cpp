@@ -12,13 +12,13 @@ namespace {
 
 using Block = ActuatorThreshold<double>;
 
-TEST(ActuatorThreshold, NothingMovesBelowIt) {
+TEST(ActuatorThreshold, HasNoOutputBelowTheThreshold) {
   Block block = make<Block>({5.0});
   EXPECT_EQ(drive(block, 0, std::vector<double>{2, 5, 12, 4, -1, 3}, 0.1),
             (std::vector<double>{0, 0, 7, 0, -1, 0}));
 }
 
-TEST(ActuatorThreshold, CutsAtEveryCorner) {
+TEST(ActuatorThreshold, SplitsTheInputAtEveryCorner) {
   Block block = make<Block>({5.0});
   pass(block, Segment<double>::straight(0.1, 0, -5));
   const auto out = pass(block, Segment<double>::straight(2.0, -5, 15));

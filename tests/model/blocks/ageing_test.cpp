@@ -12,7 +12,7 @@ namespace {
 
 using Block = Ageing<double>;
 
-TEST(Ageing, GainDriftsWithTheTimeOfTheCampaign) {
+TEST(Ageing, GainDriftsWithTheMeasurementTime) {
   Block block = make<Block>({0.5});
   Surroundings later;
   later.time_s = 7200;

@@ -51,7 +51,7 @@ double integrated(const std::vector<double>& v, const BoucWenSkew<double>& skew,
   return v[0] * p - h;
 }
 
-TEST(AsymmetricBoucWen, SkewsTheChainsBoucWenByItsEquation) {
+TEST(AsymmetricBoucWen, DeltaFollowsTheDifferentialEquation) {
   for (const std::vector<double>& material : materials) {
     for (const double share : {-0.8, 0.6}) {
       const double delta = share * std::min(material[3], material[2] + material[3]);
@@ -64,7 +64,7 @@ TEST(AsymmetricBoucWen, SkewsTheChainsBoucWenByItsEquation) {
   }
 }
 
-TEST(AsymmetricBoucWen, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
+TEST(AsymmetricBoucWen, AllSkewParametersFollowTheDifferentialEquation) {
   for (const std::vector<double>& material : materials) {
     for (const double way : {-1.0, 1.0}) {
       const BoucWenSkew<double> skew{0.2 * way * material[3], -0.3 * way * material[3], 0.15 * way};
@@ -78,7 +78,7 @@ TEST(AsymmetricBoucWen, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
 
 // The hysteretic state has saturated in one direction. When the pressure changes its direction, the state
 // must decrease, for all parameter values.
-TEST(AsymmetricBoucWen, NoSkewLetsTheStateGrowOnTheWayBack) {
+TEST(AsymmetricBoucWen, StateStaysBoundedForEveryValidSkew) {
   for (const std::vector<double>& material : materials) {
     for (const double epsilon : {-5.0, 5.0}) {
       for (const double share : {-0.9, 0.9}) {
@@ -92,7 +92,7 @@ TEST(AsymmetricBoucWen, NoSkewLetsTheStateGrowOnTheWayBack) {
   }
 }
 
-TEST(AsymmetricBoucWen, SkewedStepSizeDoesNotMatter) {
+TEST(AsymmetricBoucWen, OutputIsIndependentOfTheStepSize) {
   for (const std::vector<double>& material : materials) {
     const Model model = skewed(material, 0.5 * material[3], -0.2 * material[3], 0.1);
     Chain<double> once(model), often(model);
@@ -105,7 +105,7 @@ TEST(AsymmetricBoucWen, SkewedStepSizeDoesNotMatter) {
   }
 }
 
-TEST(AsymmetricBoucWen, SkewLeavesNoTraceAtZero) {
+TEST(AsymmetricBoucWen, ZeroSkewEqualsTheSymmetricModel) {
   for (const std::vector<double>& material : materials) {
     Chain<double> plain(Model{"plain", "test", {BlockSpec{block_type<BoucWen>(), material}}});
     Chain<double> with(skewed(material, 0.0));
@@ -114,7 +114,7 @@ TEST(AsymmetricBoucWen, SkewLeavesNoTraceAtZero) {
 }
 
 // The inverse of the model uses peek(), so peek() must include the effect of the skew parameters.
-TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
+TEST(AsymmetricBoucWen, PeekIncludesTheSkewParameters) {
   for (const std::vector<double>& material : materials) {
     Chain<double> chain(skewed(material, -0.7 * material[3], 0.2 * material[3], -0.1));
     for (const double p : turns) {
@@ -129,7 +129,7 @@ TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
 
 // During the first loading, the parameter delta has the same effect as an increase of gamma + eta. During
 // unloading, the two effects differ.
-TEST(AsymmetricBoucWen, FirstLoadingSeesTheSkewAsPartOfTheSum) {
+TEST(AsymmetricBoucWen, DeltaActsLikeGammaPlusEtaDuringFirstLoading) {
   const std::vector<double> other{0.35, 0.2, 0.02, 0.04, 1};
   Chain<double> a(skewed({0.35, 0.2, 0.03, 0.05, 1}, -0.02));
   Chain<double> b(Model{"plain", "test", {BlockSpec{block_type<BoucWen>(), other}}});
@@ -137,7 +137,7 @@ TEST(AsymmetricBoucWen, FirstLoadingSeesTheSkewAsPartOfTheSum) {
   EXPECT_GT(std::fabs(a.step(1.0, 20) - b.step(1.0, 20)), 0.05);
 }
 
-TEST(AsymmetricBoucWen, SkewBeyondEtaCountsAsEta) {
+TEST(AsymmetricBoucWen, DeltaIsLimitedToTheValueOfEta) {
   Chain<double> most(skewed({0.35, 0.2, 0.03, 0.05, 1}, 0.05));
   Chain<double> more(skewed({0.35, 0.2, 0.03, 0.05, 1}, 5.0));
   for (const double p : turns) ASSERT_EQ(most.step(1.0, p), more.step(1.0, p));

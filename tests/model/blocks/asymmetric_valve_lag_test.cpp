@@ -15,7 +15,7 @@ namespace {
 
 using Block = AsymmetricValveLag<double>;
 
-TEST(AsymmetricValveLag, FillsAndVentsWithATimeConstantEach) {
+TEST(AsymmetricValveLag, FillingAndVentingHaveSeparateTimeConstants) {
   Block block = make<Block>({0.05, 0.4});
   pass(block, Segment<double>::straight(0, 0, 8));
   pass(block, Segment<double>::straight(0.1, 8, 8));
@@ -26,7 +26,7 @@ TEST(AsymmetricValveLag, FillsAndVentsWithATimeConstantEach) {
   EXPECT_NEAR(block.output(), high * std::exp(-0.1 / 0.4), 1e-13);
 }
 
-TEST(AsymmetricValveLag, IsTheValveLagWhereBothAreAlike) {
+TEST(AsymmetricValveLag, EqualsTheValveLagForEqualTimeConstants) {
   std::mt19937_64 random(21);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.001, 0.3);
   Block both = make<Block>({0.07, 0.07});
@@ -41,7 +41,7 @@ TEST(AsymmetricValveLag, IsTheValveLagWhereBothAreAlike) {
   }
 }
 
-TEST(AsymmetricValveLag, MeetsASmallStepIntegrator) {
+TEST(AsymmetricValveLag, AgreesWithASmallStepIntegrator) {
   // The reference solution is computed by the explicit midpoint method in steps of 10 us, without an
   // exponential function.
   std::mt19937_64 random(22);
@@ -73,7 +73,7 @@ TEST(AsymmetricValveLag, FollowsAtOnceInADirectionWithoutLag) {
   EXPECT_EQ(block.output(), 20);
 }
 
-TEST(ChamberLag, IsTheSameMechanismBehindTheMeasuringPoint) {
+TEST(ChamberLag, HasTheSameResponseAsTheAsymmetricValveLag) {
   auto chamber = make<ChamberLag<double>>({0.05, 0.4});
   Block valve = make<Block>({0.05, 0.4});
   for (const auto& [from, to] : {std::pair{0.0, 30.0}, {30.0, 5.0}, {5.0, 12.0}}) {

@@ -33,7 +33,7 @@ std::vector<double> random_turning_points(unsigned seed, int count) {
   return points;
 }
 
-TEST(BoucWen, TimeDoesNotMatter) {
+TEST(BoucWen, OutputIsRateIndependent) {
   for (const auto& values : materials) {
     Block slow = make_material(values);
     Block fast = make_material(values);
@@ -118,7 +118,7 @@ TEST(BoucWen, ClosedLoopsDissipate) {
   }
 }
 
-TEST(BoucWen, WithoutEtaThereIsNoLoop) {
+TEST(BoucWen, HasNoHysteresisLoopWithoutEta) {
   Block block = make<Block>({0.21, 0.17, 0.02, 0.0, 1});
   double from = 0;
   const double up = move(block, from, 20, 1);
@@ -126,7 +126,7 @@ TEST(BoucWen, WithoutEtaThereIsNoLoop) {
   EXPECT_NEAR(move(block, from, 20, 1), up, 1e-12);
 }
 
-TEST(BoucWen, FirstLoadingSeesOnlyTheSumOfGammaAndEta) {
+TEST(BoucWen, FirstLoadingDependsOnlyOnTheSumOfGammaAndEta) {
   Block a = make<Block>({0.21, 0.17, 0.01, 0.03, 1});
   Block b = make<Block>({0.21, 0.17, 0.03, 0.01, 1});
   double pa = 0, pb = 0;
@@ -154,7 +154,7 @@ TEST(BoucWen, MeanOfASegmentIsTheIntegral) {
   }
 }
 
-TEST(BoucWen, RestIsTheFirstLoadingCurve) {
+TEST(BoucWen, ResetPlacesTheStateOnTheFirstLoadingCurve) {
   for (const auto& v : materials) {
     Block held = make_material(v);
     held.reset(25.0);

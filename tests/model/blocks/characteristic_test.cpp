@@ -12,7 +12,7 @@ namespace {
 
 using Map = CharacteristicMap<double>;
 
-TEST(Characteristic, GoesThroughZeroAndItsSpan) {
+TEST(Characteristic, PassesThroughZeroAndTheSpan) {
   for (const double a : {-4.0, -1.0, -1e-8, 0.0, 1e-8, 0.5, 4.0}) {
     const Map map{a, 25};
     EXPECT_EQ(map.value(0.0), 0) << a;
@@ -20,13 +20,13 @@ TEST(Characteristic, GoesThroughZeroAndItsSpan) {
   }
 }
 
-TEST(Characteristic, IsTheExponentialOfItsSource) {
+TEST(Characteristic, EqualsThePublishedExponentialFunction) {
   const Map map{1.7, 20};
   for (double z = 0.5; z < 20; z += 0.5)
     EXPECT_NEAR(map.value(z), 20 * (std::exp(1.7 * z / 20) - 1) / (std::exp(1.7) - 1), 1e-12);
 }
 
-TEST(Characteristic, RisesAndIsUndoneEverywhere) {
+TEST(Characteristic, IsMonotoneAndInvertibleEverywhere) {
   for (const double a : {-4.0, -0.7, -1e-10, 0.0, 1e-10, 0.3, 4.0}) {
     const Map map{a, 20};
     double last = map.value(-10.0);

@@ -7,7 +7,7 @@
 namespace softgrip::model::testing::clock_offset_test {
 namespace {
 
-TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
+TEST(ClockOffset, ALinearMotionIsReadWithTheExactLead) {
   ClockOffset<double> block = make<ClockOffset<double>>({0.12});
   block.reset(3);
   EXPECT_DOUBLE_EQ(block.output(), 3);
@@ -17,7 +17,7 @@ TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
 
 // The block uses the slope of its input at the middle of the last step. For a parabola, the error is
 // therefore proportional to the step length.
-TEST(ClockOffset, AParabolaIsReadWithAnErrorInProportionToTheStep) {
+TEST(ClockOffset, ErrorForAParabolaIsProportionalToTheStep) {
   constexpr double lead_s = 0.12;
   for (const double step_s : {0.02, 0.01, 0.005}) {
     ClockOffset<double> block = make<ClockOffset<double>>({lead_s});

@@ -18,7 +18,7 @@ double half_width(double gain, double bend, double range, double p) {
   return 0.5 * gain * range * (x - x / (1 + bend * (1 - x)));
 }
 
-TEST(CrescentHysteresis, GoesUpOneEnvelopeAndDownTheOther) {
+TEST(CrescentHysteresis, FollowsTheLoadingAndTheUnloadingEnvelope) {
   Block block = make<Block>({0.05, 3.0, 50.0});
   double from = 0;
   EXPECT_NEAR(move(block, from, 30, 1), -half_width(0.05, 3, 50, 30), 1e-12);
@@ -27,7 +27,7 @@ TEST(CrescentHysteresis, GoesUpOneEnvelopeAndDownTheOther) {
   EXPECT_NEAR(move(block, from, 0, 1), 0, 1e-12);
 }
 
-TEST(CrescentHysteresis, RestsBetweenTheEnvelopes) {
+TEST(CrescentHysteresis, HasTheMeanSlopeBetweenTheEnvelopes) {
   Block block = make<Block>({0.05, 3.0, 50.0});
   double from = 0;
   const double at_30 = move(block, from, 30, 1), at_28 = move(block, from, 28, 1);
@@ -46,7 +46,7 @@ TEST(CrescentHysteresis, AddsNothingOutsideItsRange) {
   EXPECT_NEAR(move(block, from, -10, 1), 0, 1e-12);
 }
 
-TEST(CrescentHysteresis, NeitherTimeNorStepSizeMatters) {
+TEST(CrescentHysteresis, OutputIsIndependentOfRateAndStepSize) {
   Block once = make<Block>({0.05, 3.0, 50.0}), often = make<Block>({0.05, 3.0, 50.0});
   double a = 0, b = 0;
   for (const double to : {40.0, 12.0, 33.0, 5.0, 60.0, 0.0}) {

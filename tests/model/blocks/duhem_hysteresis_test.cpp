@@ -11,13 +11,13 @@ namespace {
 
 using Block = DuhemHysteresis<double>;
 
-TEST(DuhemHysteresis, FirstLoadingIsFreeOfIt) {
+TEST(DuhemHysteresis, HasNoEffectDuringFirstLoading) {
   Block block = make<Block>({0.05, 15.0, 5.0});
   double from = 0;
   EXPECT_EQ(move(block, from, 40, 1), 0);
 }
 
-TEST(DuhemHysteresis, UnloadingWindsItUpAndLoadingLetsItFade) {
+TEST(DuhemHysteresis, UnloadingBuildsTheStateAndLoadingDecaysTheState) {
   Block block = make<Block>({0.05, 15.0, 5.0});
   double from = 0;
   move(block, from, 40, 1);
@@ -26,7 +26,7 @@ TEST(DuhemHysteresis, UnloadingWindsItUpAndLoadingLetsItFade) {
   EXPECT_NEAR(move(block, from, 25, 1), wound * std::exp(-3.0), 1e-12);
 }
 
-TEST(DuhemHysteresis, NeitherTimeNorStepSizeMatters) {
+TEST(DuhemHysteresis, OutputIsIndependentOfRateAndStepSize) {
   Block once = make<Block>({0.05, 15.0, 5.0}), often = make<Block>({0.05, 15.0, 5.0});
   double a = 0, b = 0;
   for (const double to : {40.0, 12.0, 33.0, 5.0, 60.0, 0.0}) {

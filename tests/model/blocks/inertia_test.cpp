@@ -13,7 +13,7 @@ namespace {
 
 using Block = Inertia<double>;
 
-TEST(Inertia, StepResponseRingsLikeTheTextbook) {
+TEST(Inertia, StepResponseMatchesTheAnalyticalSolution) {
   Block block = make<Block>({0.2, 0.1});
   pass(block, Segment<double>::straight(0, 0, 5));
   EXPECT_EQ(block.output(), 0);
@@ -26,7 +26,7 @@ TEST(Inertia, StepResponseRingsLikeTheTextbook) {
   }
 }
 
-TEST(Inertia, RampInOneStepOrMany) {
+TEST(Inertia, RampResponseIsIndependentOfTheStepSize) {
   Block once = make<Block>({0.13, 0.3}), often = make<Block>({0.13, 0.3});
   double mean = 0;
   const auto out = pass(once, Segment<double>::straight(0.5, 0, 12));
@@ -39,7 +39,7 @@ TEST(Inertia, RampInOneStepOrMany) {
   EXPECT_NEAR(out[0].mean, mean, 1e-10);
 }
 
-TEST(Inertia, VeryShortSegmentsDoNoHarm) {
+TEST(Inertia, VeryShortSegmentsDoNotChangeTheOutput) {
   Block whole = make<Block>({0.13, 0.3}), pieces = make<Block>({0.13, 0.3});
   for (int i = 0; i < 300; ++i) {
     const double a = 0.02 * i, b = 0.02 * (i + 1);
@@ -55,7 +55,7 @@ TEST(Inertia, VeryShortSegmentsDoNoHarm) {
   }
 }
 
-TEST(Inertia, SeesTheParabola) {
+TEST(Inertia, RespondsToTheCurvatureOfTheInput) {
   Block curved = make<Block>({0.1, 0.3}), pieces = make<Block>({0.1, 0.3});
   const Segment<double> in{0.05, 0, 4, 2 + 1.2 / 6};
   pass(curved, in);

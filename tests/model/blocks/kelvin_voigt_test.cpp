@@ -14,7 +14,7 @@ using Block = KelvinVoigt<double>;
 
 const std::vector<double> two_branches{325.9, 18.0, 246.1, 2.0, 1.2};
 
-TEST(KelvinVoigt, StepResponseIsTheTextbookOne) {
+TEST(KelvinVoigt, StepResponseMatchesTheAnalyticalSolution) {
   Block block(two_branches, Preparation{});
   double from = 0;
   move(block, from, 40, 0);  // a pressure step, because the duration is 0
@@ -29,7 +29,7 @@ TEST(KelvinVoigt, StepResponseIsTheTextbookOne) {
   }
 }
 
-TEST(KelvinVoigt, RampResponseIsTheTextbookOne) {
+TEST(KelvinVoigt, RampResponseMatchesTheAnalyticalSolution) {
   // Displacement that is expected for a pressure ramp p = r t: x(t) = r/k (t - tau (1 - exp(-t/tau))).
   for (const double t : {1e-4, 0.1, 5.0, 400.0}) {
     Block block = make<Block>({1e9, 2.0, 1.2});
@@ -41,7 +41,7 @@ TEST(KelvinVoigt, RampResponseIsTheTextbookOne) {
   }
 }
 
-TEST(KelvinVoigt, ResponsesAdd) {
+TEST(KelvinVoigt, ResponsesObeySuperposition) {
   Block a(two_branches, Preparation{}), b(two_branches, Preparation{}), sum(two_branches, Preparation{});
   double pa = 0, pb = 0, ps = 0;
   for (int i = 1; i < 500; ++i) {
@@ -70,7 +70,7 @@ TEST(KelvinVoigt, StepSizeDoesNotMatter) {
   }
 }
 
-TEST(KelvinVoigt, AnyBranchBetweenSpringAndDashpot) {
+TEST(KelvinVoigt, ABranchActsAsASpringOrADashpotInTheLimits) {
   // A branch with a very short time constant acts like a spring. A branch with a very long time constant acts
   // like a dashpot with the displacement p t / c. A branch with stiffness 0 must equal this dashpot exactly.
   Block spring = make<Block>({1e9, 5.0, 1e-9});
@@ -87,7 +87,7 @@ TEST(KelvinVoigt, AnyBranchBetweenSpringAndDashpot) {
   EXPECT_NEAR(dashpot.output(), pure.output(), 1e-9);
 }
 
-TEST(KelvinVoigt, SeesTheParabolaThroughBeginEndAndMean) {
+TEST(KelvinVoigt, RespondsToTheCurvatureOfTheInput) {
   // The input is u(s) = 10 s + 8 s (1 - s) for the time s from 0 to 1 s. The mean of the input is 10/2 + 8/6.
   // The reference solution divides this input into 2000 linear segments.
   Block curved(two_branches, Preparation{}), pieces(two_branches, Preparation{});
@@ -103,7 +103,7 @@ TEST(KelvinVoigt, SeesTheParabolaThroughBeginEndAndMean) {
   EXPECT_NEAR(out.mean, integral, 1e-6);
 }
 
-TEST(KelvinVoigt, EightBranches) {
+TEST(KelvinVoigt, StaticGainIncludesAllEightBranches) {
   std::vector<double> values{300};
   double gain = 1 / 300.0;
   for (int i = 1; i <= 8; ++i) {

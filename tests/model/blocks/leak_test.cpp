@@ -35,7 +35,7 @@ double balanced_kpa(double before_kpa, double conductance_ratio) {
   return low;
 }
 
-TEST(Leak, LosesWhatTwoPortsInARowLose) {
+TEST(Leak, PressureLossAgreesWithTwoRestrictionsInSeries) {
   for (const double ratio : {0.05, 0.1, 0.2}) {
     const LineLoss<double> loss{ratio * ratio};
     for (const double before : {5.0, 20.0, 60.0, 100.0, 150.0, 300.0}) {
@@ -45,7 +45,7 @@ TEST(Leak, LosesWhatTwoPortsInARowLose) {
   }
 }
 
-TEST(Leak, IsUndoneExactly) {
+TEST(Leak, IsMonotoneAndExactlyInvertible) {
   for (const double share : {0.0, 0.001, 0.03, 0.5, 10.0}) {
     const LineLoss<double> loss{share};
     double last = loss.behind(-51.0);
@@ -58,12 +58,12 @@ TEST(Leak, IsUndoneExactly) {
   }
 }
 
-TEST(Leak, HasNoStepWhereTheFlowChokes) {
+TEST(Leak, IsContinuousAtTheOnsetOfChokedFlow) {
   const LineLoss<double> loss{0.1};
   EXPECT_NEAR(loss.before(atmosphere_kpa * (1 - 1e-12)), loss.before(atmosphere_kpa * (1 + 1e-12)), 1e-9);
 }
 
-TEST(Leak, TakesTheSameHoweverItGotThere) {
+TEST(Leak, LossIsIndependentOfThePressureHistory) {
   Block block = make<Block>({0.05});
   const std::vector<double> ways = drive(block, 0, std::array{40.0, 60.0, 40.0}, 0.1);
   EXPECT_NEAR(ways[0], LineLoss<double>{0.05}.behind(40.0), 1e-12);

@@ -18,7 +18,7 @@ using Block = LinearModes<double>;
 
 // The expected values come from a numerical integration by SciPy (solve_ivp, DOP853, relative tolerance
 // 1e-12). The block has an oscillating mode, a mode with two real poles, and a negative static gain.
-TEST(LinearModes, RampAndHoldAreThoseOfANumericalIntegration) {
+TEST(LinearModes, RampAndHoldResponseMatchesANumericalIntegration) {
   Block block = make<Block>({0.15, 0.2, 0.1, 0.5, -0.3, 0.6, 3.0, -0.8, 0.4});
   constexpr std::array<std::pair<double, double>, 6> expected{{{0.1, 1.035965286},
                                                                {0.3, 3.432942482},
@@ -34,7 +34,7 @@ TEST(LinearModes, RampAndHoldAreThoseOfANumericalIntegration) {
   }
 }
 
-TEST(LinearModes, AModeWithUnitGainIsTheInertia) {
+TEST(LinearModes, AModeWithUnitGainEqualsTheInertiaBlock) {
   Block block = make<Block>({0, 0.13, 0.3, 1, 0});
   auto inertia = make<Inertia<double>>({0.13, 0.3});
   const Segment<double> in{0.05, 0, 4, 2 + 1.2 / 6};
@@ -44,7 +44,7 @@ TEST(LinearModes, AModeWithUnitGainIsTheInertia) {
   EXPECT_NEAR(out.mean, expected[0].mean, 1e-12);
 }
 
-TEST(LinearModes, MeanIsThatOfShortSegments) {
+TEST(LinearModes, MeanEqualsTheAverageOverShortSegments) {
   for (const double damping_ratio : {0.1, 1.0, 40.0}) {
     Block once = make<Block>({0.2, 0.3, damping_ratio, 0.4, -0.7}), often = once;
     const Segment<double> out = once.step(Segment<double>::straight(0.4, 0, 10), {});
@@ -88,7 +88,7 @@ struct Lag {
 // In partial fractions, a mode with two real poles is the difference of two lags. The segments are much
 // shorter than the slow time constant, and the closed form of the solution would lose all digits in the first
 // cases.
-TEST(LinearModes, AStronglyDampedSlowModeIsTheDifferenceOfTwoLags) {
+TEST(LinearModes, AStronglyDampedModeEqualsTheDifferenceOfTwoLags) {
   for (const auto& [period_s, damping, tolerance] :
        {std::tuple(100.0, 100.0, 1e-11), {100.0, 1.5, 1e-11}, {3.0, 100.0, 1e-11}, {1.2, 100.0, 1e-4}}) {
     const long double omega = 2 * std::numbers::pi_v<long double> / period_s;
@@ -143,7 +143,7 @@ TEST(LinearModes, TheResponseIsContinuousAtTheDampingRatioOne) {
   }
 }
 
-TEST(LinearModes, AJumpOfThePressureMovesOnlyTheDirectPart) {
+TEST(LinearModes, APressureStepChangesOnlyTheDirectFeedthrough) {
   Block block = make<Block>({0.2, 0.3, 0.5, 1, 2});
   const Segment<double> out = block.step(Segment<double>::straight(0, 0, 10), {});
   EXPECT_EQ(out.begin, 0);

@@ -12,7 +12,7 @@ namespace {
 
 using Block = Outliers<double>;
 
-TEST(Outliers, AsManyAsTheirProbabilityUpAndDown) {
+TEST(Outliers, OccurWithTheGivenProbabilityInBothDirections) {
   Block block = make<Block>({0.05, 2.0});
   int up = 0, down = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -25,7 +25,7 @@ TEST(Outliers, AsManyAsTheirProbabilityUpAndDown) {
   EXPECT_NEAR(down, 500, 110);
 }
 
-TEST(Outliers, SameSeedSameOutliers) {
+TEST(Outliers, EqualSeedsGiveEqualOutliers) {
   Block a = make<Block>({0.5, 2.0}), b = make<Block>({0.5, 2.0});
   for (int i = 0; i < 100; ++i) ASSERT_EQ(a.sample(0.0, 0.01, {}), b.sample(0.0, 0.01, {}));
 }

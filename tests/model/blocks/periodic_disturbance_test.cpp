@@ -12,7 +12,7 @@ namespace {
 
 using Block = PeriodicDisturbance<double>;
 
-TEST(PeriodicDisturbance, OscillatesOnTheClockOfTheCampaign) {
+TEST(PeriodicDisturbance, OscillatesWithTheRecordingTime) {
   Block block = make<Block>({0.3, 0.4, 2.0});
   Surroundings around;
   around.time_s = 0;

@@ -35,7 +35,7 @@ TEST(PrandtlIshlinskii, FirstLoadingIsTheInitialCurve) {
   }
 }
 
-TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
+TEST(PrandtlIshlinskii, ATrainedFingerFollowsTheCurveOfALaterLoading) {
   std::vector<double> trained = operators;
   trained.front() = 60;
   Block block(std::span<const double>(trained), Preparation{});
@@ -52,7 +52,7 @@ TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
   }
 }
 
-TEST(PrandtlIshlinskii, ReturnsOnTheSameCurveTwiceAsLarge) {
+TEST(PrandtlIshlinskii, UnloadingFollowsMasingsRule) {
   // Masing's rule: after a reversal, the curve is the initial loading curve with both pressure and
   // displacement scaled by the factor 2.
   Block virgin = fresh();
@@ -66,7 +66,7 @@ TEST(PrandtlIshlinskii, ReturnsOnTheSameCurveTwiceAsLarge) {
   }
 }
 
-TEST(PrandtlIshlinskii, AnInnerLoopIsWipedOut) {
+TEST(PrandtlIshlinskii, AClosedInnerLoopHasNoLaterEffect) {
   Block plain = fresh(), looped = fresh();
   for (const auto& [from, to] : {std::pair{0.0, 40.0}, {40.0, 10.0}}) {
     plain.step(straight(from, to), {});
@@ -79,7 +79,7 @@ TEST(PrandtlIshlinskii, AnInnerLoopIsWipedOut) {
   EXPECT_NEAR(plain.output(), looped.output(), 1e-12);
 }
 
-TEST(PrandtlIshlinskii, KeepsNoMemoryOfTheRate) {
+TEST(PrandtlIshlinskii, OutputIsRateIndependent) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> pressure(0, 60);
   Block slow = fresh(), quick = fresh();
@@ -93,7 +93,7 @@ TEST(PrandtlIshlinskii, KeepsNoMemoryOfTheRate) {
   }
 }
 
-TEST(PrandtlIshlinskii, MeanIsThatOfManySmallSteps) {
+TEST(PrandtlIshlinskii, MeanEqualsTheAverageOverManySmallSteps) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> pressure(0, 60);
   Block whole = fresh(), parts = fresh();
@@ -112,7 +112,7 @@ TEST(PrandtlIshlinskii, MeanIsThatOfManySmallSteps) {
   }
 }
 
-TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
+TEST(PrandtlIshlinskii, ClosedLoopsProduceNoEnergy) {
   // The pressure never does negative work over a closed hysteresis loop.
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> pressure(0, 60);
@@ -139,7 +139,7 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
 
 /// Generalised play operators must have the same output as ordinary play operators whose input is the
 /// envelope function of the pressure.
-TEST(PrandtlIshlinskii, BentEnvelopesAreAPressureOfTheirOwn) {
+TEST(PrandtlIshlinskii, NonlinearEnvelopesEqualAMappedPressure) {
   const double bend = 0.3, skew = -0.15, end_kpa = 50;
   const auto seen_kpa = [&](double p) {
     const double x = std::clamp(p / end_kpa, 0.0, 1.0);
@@ -167,7 +167,7 @@ TEST(PrandtlIshlinskii, BentEnvelopesAreAPressureOfTheirOwn) {
   EXPECT_GT(loudest, 2);
 }
 
-TEST(PrandtlIshlinskii, BentEnvelopesRiseEverywhereWithinTheirBounds) {
+TEST(PrandtlIshlinskii, NonlinearEnvelopesAreMonotoneWithinTheirBounds) {
   for (const double bend : {-0.6, 0.0, 0.6}) {
     for (const double skew : {-0.35, 0.0, 0.35}) {
       const EnvelopeMap<double> map(bend, skew, 40);
@@ -177,13 +177,13 @@ TEST(PrandtlIshlinskii, BentEnvelopesRiseEverywhereWithinTheirBounds) {
   }
 }
 
-TEST(PrandtlIshlinskii, BentEnvelopesSayWhereTheBendEnds) {
+TEST(PrandtlIshlinskii, NonlinearEnvelopesNeedAnEndPressure) {
   EXPECT_FALSE(Block::objection(std::vector<double>{0, 0.1, 0, 0, 0, 0.2}).empty());
   EXPECT_FALSE(Block::objection(std::vector<double>{0, 0, 0.1, 0, 0, 0.2}).empty());
   EXPECT_TRUE(Block::objection(std::vector<double>{0, 0.1, 0.1, 40, 0, 0.2}).empty());
 }
 
-TEST(PrandtlIshlinskii, ThresholdsRise) {
+TEST(PrandtlIshlinskii, RefusesThresholdsThatDoNotIncrease) {
   EXPECT_TRUE(Block::objection(operators).empty());
   EXPECT_FALSE(Block::objection(std::vector<double>{0, 0, 0, 0, 2, 0.1, 2, 0.2}).empty());
   EXPECT_FALSE(Block::objection(std::vector<double>{0, 0, 0, 0, 5, 0.1, 2, 0.2}).empty());

@@ -12,7 +12,7 @@ namespace {
 
 using Block = PressureDependentCreep<double>;
 
-TEST(PressureDependentCreep, CreepsOnlyAboveItsHinge) {
+TEST(PressureDependentCreep, CreepsOnlyAboveTheThresholdPressure) {
   Block block = make<Block>({20, 0.05, 2});
   block.step(Segment<double>::straight(0, 0, 19), {});
   block.step(Segment<double>::straight(100, 19, 19), {});
@@ -22,7 +22,7 @@ TEST(PressureDependentCreep, CreepsOnlyAboveItsHinge) {
   EXPECT_NEAR(block.output(), 0.05 * 10 * -std::expm1(-1.0), 1e-12);
 }
 
-TEST(PressureDependentCreep, IsAKelvinVoigtBranchWithItsHingeAtZero) {
+TEST(PressureDependentCreep, EqualsAKelvinVoigtBranchForAZeroThreshold) {
   Block block = make<Block>({0, 0.05, 2});
   auto branch = make<KelvinVoigt<double>>({1e9, 20, 40});
   for (const auto& [from, to] : {std::pair{0.0, 30.0}, {30.0, 5.0}, {5.0, 50.0}}) {
@@ -32,7 +32,7 @@ TEST(PressureDependentCreep, IsAKelvinVoigtBranchWithItsHingeAtZero) {
   }
 }
 
-TEST(PressureDependentCreep, PassesItsHingeInsideAStep) {
+TEST(PressureDependentCreep, CrossesTheThresholdCorrectlyWithinAStep) {
   Block whole = make<Block>({20, 0.05, 0.5}), parts = make<Block>({20, 0.05, 0.5});
   for (Block* block : {&whole, &parts}) block->step(Segment<double>::straight(0, 0, 10), {});
   for (const auto& [from, to] : {std::pair{10.0, 30.0}, {30.0, 10.0}}) {

@@ -55,7 +55,7 @@ class SmallSteps {
 
 /// Compares the block with the reference solution. Some inputs are constant over a step, like the output of a
 /// board. Other inputs are ramps of up to 600 kPa/s.
-TEST(PressureRegulator, MeetsASmallStepIntegrator) {
+TEST(PressureRegulator, AgreesWithASmallStepIntegrator) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.1, 0.4);
   Block block = make<Block>({0.03, 0.05, 0.6, 0.4, 11});
@@ -74,7 +74,7 @@ TEST(PressureRegulator, MeetsASmallStepIntegrator) {
   EXPECT_LT(worst, 0.002 * 62) << "seed 31";
 }
 
-TEST(PressureRegulator, StandsStillWithinItsOverlapUntilTheIntegralHasGrown) {
+TEST(PressureRegulator, IsConstantUntilTheIntegralExceedsTheOverlap) {
   Block block = make<Block>({0.02, 0.02, 0.5, 0.4, 0});
   block.reset(20);
   pass(block, Segment<double>::straight(0, 20, 20.4));
@@ -88,21 +88,21 @@ TEST(PressureRegulator, StandsStillWithinItsOverlapUntilTheIntegralHasGrown) {
   EXPECT_GT(block.output(), 20.2);
 }
 
-TEST(PressureRegulator, EndsWhereItIsAskedToBe) {
+TEST(PressureRegulator, SettlesAtTheCommandedPressure) {
   Block block = make<Block>({0.02, 0.03, 0.5, 0.4, 12});
   pass(block, Segment<double>::straight(0, 0, 30));
   for (int i = 0; i < 400; ++i) pass(block, Segment<double>::straight(0.02, 30, 30));
   EXPECT_NEAR(block.output(), 30, 0.05);
 }
 
-TEST(PressureRegulator, OpensNoFurtherThanItGets) {
+TEST(PressureRegulator, FlowSaturatesAtFullOpening) {
   Block block = make<Block>({0.05, 0.05, 0, 0, 10});
   pass(block, Segment<double>::straight(0, 0, 60));
   pass(block, Segment<double>::straight(0.1, 60, 60));
   EXPECT_NEAR(block.output(), 0.1 * 10 / 0.05, 1e-9);
 }
 
-TEST(PressureRegulator, IsTheLagOfTheValveWhereItOnlyFills) {
+TEST(PressureRegulator, EqualsTheValveLagDuringFilling) {
   Block regulator = make<Block>({0.06, 0.1, 0, 0, 0});
   auto lag = make<AsymmetricValveLag<double>>({0.06, 0.1});
   for (const auto& [from, to] : {std::pair{0.0, 10.0}, {10.0, 35.0}, {35.0, 60.0}}) {
@@ -112,7 +112,7 @@ TEST(PressureRegulator, IsTheLagOfTheValveWhereItOnlyFills) {
   }
 }
 
-TEST(PressureRegulator, ALongRestIsNotWalkedThrough) {
+TEST(PressureRegulator, ALongRestIsOneSegment) {
   Block block = make<Block>({0.02, 0.03, 0.5, 0.4, 12});
   block.reset(20);
   const auto out = pass(block, Segment<double>::straight(1e9, 20, 20));
@@ -121,13 +121,13 @@ TEST(PressureRegulator, ALongRestIsNotWalkedThrough) {
   EXPECT_EQ(out.front().mean, 20);
 }
 
-TEST(PressureRegulator, ObjectsToAPortThatIsFullyOpenWithinItsOverlap) {
+TEST(PressureRegulator, RefusesAFullOpeningWithinTheOverlap) {
   EXPECT_FALSE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.5}).empty());
   EXPECT_TRUE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.6}).empty());
   EXPECT_TRUE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.0}).empty());
 }
 
-TEST(RegulatedPressure, PassesOnWhatItIsInTheMean) {
+TEST(RegulatedPressure, MeanEqualsTheAverageOverSmallSteps) {
   RegulatedPressure<double> whole({0.03, 0.05, 0.4, 0.4, 12}), fine({0.03, 0.05, 0.4, 0.4, 12});
   double area = 0, fine_area = 0;
   whole.step(Segment<double>::straight(0.08, 0, 40),

@@ -9,7 +9,7 @@ namespace {
 
 using Block = PressureSaturation<double>;
 
-TEST(PressureSaturation, CutsWhereTheLimitIsPassed) {
+TEST(PressureSaturation, SplitsASegmentAtTheLimit) {
   Block block = make<Block>({30.0});
   const auto up = pass(block, Segment<double>::straight(1.0, 10, 50));
   ASSERT_EQ(up.size(), 2u);
@@ -25,7 +25,7 @@ TEST(PressureSaturation, CutsWhereTheLimitIsPassed) {
   EXPECT_NEAR(down[1].mean, 15, 1e-12);
 }
 
-TEST(PressureSaturation, TouchingTheLimitIsNotPassingIt) {
+TEST(PressureSaturation, DoesNotSplitASegmentThatOnlyReachesTheLimit) {
   Block block = make<Block>({30.0});
   EXPECT_EQ(pass(block, Segment<double>::straight(1.0, 10, 30)).size(), 1u);
   const auto above = pass(block, Segment<double>::straight(1.0, 30, 40));
@@ -35,7 +35,7 @@ TEST(PressureSaturation, TouchingTheLimitIsNotPassingIt) {
   EXPECT_EQ(block.output(), 5);
 }
 
-TEST(PressureSaturation, CutsACurvedSegmentToo) {
+TEST(PressureSaturation, SplitsACurvedSegmentAtTheLimit) {
   Block block = make<Block>({30.0});
   const Segment<double> curved{1.0, 10, 50, 35};
   const auto out = pass(block, curved);

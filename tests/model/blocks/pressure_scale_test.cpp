@@ -7,7 +7,7 @@
 namespace softgrip::model::testing::pressure_scale_test {
 namespace {
 
-TEST(PressureScale, IsAShareOfAllThatIsAsked) {
+TEST(PressureScale, ScalesThePressureByAConstantFactor) {
   auto block = make<PressureScale<double>>({0.9});
   const auto out = pass(block, Segment<double>{0.5, 0, 40, 25});
   ASSERT_EQ(out.size(), 1U);

@@ -12,7 +12,7 @@ namespace {
 
 using Block = PseudoElasticSoftening<double>;
 
-TEST(PseudoElasticSoftening, FirstLoadingIsFreeOfIt) {
+TEST(PseudoElasticSoftening, HasNoEffectDuringFirstLoading) {
   Block block = make<Block>({0.01, 10.0});
   EXPECT_EQ(drive(block, 0, std::vector<double>{10, 20, 40}, 1.0), (std::vector<double>{10, 20, 40}));
   EXPECT_EQ(block.largest_kpa(), 40);
@@ -20,7 +20,7 @@ TEST(PseudoElasticSoftening, FirstLoadingIsFreeOfIt) {
 
 // Compares the output of the block with the published formula. This formula gives the input as a function of
 // the output, so the test needs no iteration.
-TEST(PseudoElasticSoftening, ObeysTheSourcesFormulaBelowTheLargestLoad) {
+TEST(PseudoElasticSoftening, FollowsThePublishedFormulaBelowTheLargestLoad) {
   Block block = make<Block>({0.01, 10.0});
   drive(block, 0, std::vector<double>{40}, 1.0);
   double from = 40;
@@ -32,7 +32,7 @@ TEST(PseudoElasticSoftening, ObeysTheSourcesFormulaBelowTheLargestLoad) {
   }
 }
 
-TEST(PseudoElasticSoftening, GoesTheSameWayBackAndJoinsTheFirstLoading) {
+TEST(PseudoElasticSoftening, ReloadingFollowsTheUnloadingCurveToTheLargestLoad) {
   Block block = make<Block>({0.01, 10.0});
   const std::vector<double> out = drive(block, 0, std::vector<double>{40, 25, 0, 25, 40, 45, 25}, 1.0);
   EXPECT_NEAR(out[3], out[1], 1e-12);
@@ -43,7 +43,7 @@ TEST(PseudoElasticSoftening, GoesTheSameWayBackAndJoinsTheFirstLoading) {
 
 // With these parameters, a softening factor that multiplies the pressure would decrease faster than the
 // pressure rises. The output would then fall while the pressure rises.
-TEST(PseudoElasticSoftening, RisesWithThePressureWhateverItsNumbers) {
+TEST(PseudoElasticSoftening, IsMonotoneForExtremeParameters) {
   Block block = make<Block>({0.5, 0.5});
   drive(block, 0, std::vector<double>{50}, 1.0);
   double last = 50;
@@ -55,7 +55,7 @@ TEST(PseudoElasticSoftening, RisesWithThePressureWhateverItsNumbers) {
   EXPECT_NEAR(last, 0, 1e-9);
 }
 
-TEST(PseudoElasticSoftening, MeanOfAStepAcrossTheLargestLoad) {
+TEST(PseudoElasticSoftening, MeanIsCorrectForAStepAcrossTheLargestLoad) {
   Block once = make<Block>({0.01, 10.0}), often = make<Block>({0.01, 10.0});
   for (Block* block : {&once, &often}) drive(*block, 0, std::vector<double>{20, 18}, 1.0);
   double mean = 0, fine = 0;

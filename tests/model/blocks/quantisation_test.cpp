@@ -15,7 +15,7 @@ TEST(Quantisation, RoundsToTheNearestStep) {
   EXPECT_EQ(block.sample(-0.6, 0.1, {}), -0.5);
 }
 
-TEST(Quantisation, LetsDerivativesThrough) {
+TEST(Quantisation, DerivativesPassUnchanged) {
   const std::vector<Dual<double>> values{Dual<double>(0.25)};
   Quantisation<Dual<double>> block(values, Preparation{});
   const Dual<double> y = block.sample(Dual<double>(0.3, 2.0), Dual<double>(0.1), {});

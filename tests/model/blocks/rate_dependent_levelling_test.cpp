@@ -23,7 +23,7 @@ const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, 
 
 // Compares the chain with an integration of the equation in steps of 10 us. In each of its steps, the chain
 // uses the rate at the beginning of the step.
-TEST(RateDependentLevelling, SaturatesTheChainsBoucWenByItsEquation) {
+TEST(RateDependentLevelling, FollowsTheDifferentialEquation) {
   for (const double saturation : {1.5, -0.6}) {
     Chain<double> chain(saturating(saturation));
     double p = 0, h = 0, r = 0;
@@ -47,7 +47,7 @@ TEST(RateDependentLevelling, SaturatesTheChainsBoucWenByItsEquation) {
   }
 }
 
-TEST(RateDependentLevelling, SlowMotionKnowsNothingOfIt) {
+TEST(RateDependentLevelling, HasNoEffectOnSlowMotion) {
   Chain<double> plain(saturating(0.0)), soon(saturating(0.8));
   for (const double p : {40.0, 12.0, 33.0, 0.0}) EXPECT_NEAR(soon.step(1e6, p), plain.step(1e6, p), 1e-4);
 }

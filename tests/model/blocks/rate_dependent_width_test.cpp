@@ -27,7 +27,7 @@ struct Move {
 const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, {5, 1}, {50, 0.01}, {0, 2}};
 
 // Compares the chain with an integration of the equations by Heun's method in steps of 20 us.
-TEST(RateDependentWidth, WidensTheChainsBoucWenByItsEquation) {
+TEST(RateDependentWidth, FollowsTheDifferentialEquation) {
   Chain<double> chain(widened(0.6));
   double p = 0, h = 0, r = 0;
   for (const Move& move : moves) {
@@ -46,7 +46,7 @@ TEST(RateDependentWidth, WidensTheChainsBoucWenByItsEquation) {
   }
 }
 
-TEST(RateDependentWidth, WidenedStepSizeDoesNotMatter) {
+TEST(RateDependentWidth, OutputIsIndependentOfTheStepSize) {
   Chain<double> once(widened(0.6)), often(widened(0.6));
   double from = 0;
   for (const Move& move : moves) {
@@ -56,12 +56,12 @@ TEST(RateDependentWidth, WidenedStepSizeDoesNotMatter) {
   }
 }
 
-TEST(RateDependentWidth, SlowMotionKnowsNothingOfTheGrowth) {
+TEST(RateDependentWidth, HasNoEffectOnSlowMotion) {
   Chain<double> plain(widened(0.0)), wide(widened(0.6));
   for (const double p : {40.0, 12.0, 33.0, 0.0}) EXPECT_NEAR(wide.step(1e6, p), plain.step(1e6, p), 1e-4);
 }
 
-TEST(RateDependentWidth, PeekKnowsOfTheGrowth) {
+TEST(RateDependentWidth, PeekIncludesTheRateDependence) {
   Chain<double> chain(widened(0.6, 0.8));
   for (const Move& move : moves) {
     const double h = 1e-5;

@@ -75,7 +75,7 @@ TEST(RateLimit, AgreesWithASmallStepIntegrator) {
 
 // The input of the rate limit is curved, like the output of a lag. The mean of each output segment must lie
 // between the values at the ends of the segment.
-TEST(RateLimit, ABentInputGivesMonotoneSegments) {
+TEST(RateLimit, ACurvedInputGivesMonotoneSegments) {
   std::mt19937_64 random(24);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.4), bend(0.02, 0.98);
   Block block = make<Block>({0.01, 0.02});
@@ -94,7 +94,7 @@ TEST(RateLimit, ABentInputGivesMonotoneSegments) {
   EXPECT_GT(divided, 50);
 }
 
-TEST(RateLimit, GivesTheDerivativesOfTheMeeting) {
+TEST(RateLimit, DerivativesIncludeTheTimeOfReachingTheCommand) {
   const auto run = [](auto filling) {
     using T = decltype(filling);
     const std::vector<T> values{filling, T(0.1)};

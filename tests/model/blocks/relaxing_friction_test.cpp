@@ -30,7 +30,7 @@ double width(double rate_kpa_per_s) {
   return down - up;
 }
 
-TEST(RelaxingFriction, LoopGrowsWithTheRateUpToItsWidth) {
+TEST(RelaxingFriction, LoopWidthIncreasesWithTheRateUpToALimit) {
   EXPECT_NEAR(width(0.01), 2 * 0.03 * 0.01,
               1e-5);  // for a slow input, the friction is viscous: half the width is gain * tau * rate
   EXPECT_GT(width(10), 2 * width(1.0));
@@ -41,7 +41,7 @@ TEST(RelaxingFriction, LoopGrowsWithTheRateUpToItsWidth) {
   EXPECT_NEAR(width(1e6), 2 * 0.03 * middle, 1e-5);
 }
 
-TEST(RelaxingFriction, Relaxes) {
+TEST(RelaxingFriction, RelaxesExponentiallyAtConstantPressure) {
   Block block = make<Block>({0.03, 10.0, 1.0});
   double from = 0;
   const double held = move(block, from, 30, 0.1);

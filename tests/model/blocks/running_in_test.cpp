@@ -12,7 +12,7 @@ namespace {
 
 using Block = RunningIn<double>;
 
-TEST(RunningIn, RunsInOverATime) {
+TEST(RunningIn, GainApproachesItsFinalValueExponentially) {
   Block block = make<Block>({0.2, 100.0});
   Surroundings around;
   for (const double time_s : {0.0, 50.0, 100.0, 1e4}) {

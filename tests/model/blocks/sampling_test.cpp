@@ -7,7 +7,7 @@
 namespace softgrip::model::testing::sampling_test {
 namespace {
 
-TEST(Sampling, HoldsTheReadingForItsInterval) {
+TEST(Sampling, ReadingIsConstantDuringTheSamplingInterval) {
   Sampling<double> block = make<Sampling<double>>({0.1});
   block.reset(0);
   for (int i = 1; i <= 100; ++i) {
@@ -16,7 +16,7 @@ TEST(Sampling, HoldsTheReadingForItsInterval) {
   }
 }
 
-TEST(Sampling, AnIntervalThatIsNoMultipleOfTheSamplesKeepsItsMean) {
+TEST(Sampling, ANonIntegerIntervalIsCorrectOnAverage) {
   Sampling<double> block = make<Sampling<double>>({0.07});
   block.reset(-1);
   int updates = 0;

@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorDrift<double>;
 
-TEST(SensorDrift, GrowsWithTheTimeOfTheCampaign) {
+TEST(SensorDrift, IncreasesLinearlyWithTime) {
   Block block = make<Block>({1.8});
   Surroundings around;
   for (const double time_s : {0.0, 60.0, 3600.0}) {

@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorFreeDrift<double>;
 
-TEST(SensorFreeDrift, GoesStraightFromKnotToKnotAndStays) {
+TEST(SensorFreeDrift, IsLinearBetweenKnotsAndConstantAfterTheLast) {
   Block block = make<Block>({20.0, 0.4, -0.2, 0.1});
   Surroundings around;
   for (const auto& [time_s, drift_mm] : std::vector<std::pair<double, double>>{{0, 0.0},

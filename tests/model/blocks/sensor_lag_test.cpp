@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorLag<double>;
 
-TEST(SensorLag, StepAndRampResponsesAreTheTextbookOnes) {
+TEST(SensorLag, StepAndRampResponsesMatchTheAnalyticalSolution) {
   Block step = make<Block>({0.05});
   pass(step, Segment<double>::straight(0, 0, 8));
   pass(step, Segment<double>::straight(0.07, 8, 8));
@@ -22,7 +22,7 @@ TEST(SensorLag, StepAndRampResponsesAreTheTextbookOnes) {
   EXPECT_NEAR(ramp.output(), 10 * (0.3 + 0.05 * std::expm1(-6.0)), 1e-12);
 }
 
-TEST(SensorLag, KeepsTheBalanceOfItsMean) {
+TEST(SensorLag, MeanSatisfiesTheBalanceOfTheLag) {
   Block block = make<Block>({0.05});
   const auto out = pass(block, Segment<double>{0.1, 0, 10, 6});
   EXPECT_NEAR(0.05 * block.output(), 0.1 * (6 - out[0].mean), 1e-14);

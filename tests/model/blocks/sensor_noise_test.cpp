@@ -34,7 +34,7 @@ double rms(const std::vector<double>& x) {
 
 // For 100,000 samples, the standard errors are 0.003 for the mean, 0.0022 for the RMS, and 0.003 for a
 // correlation.
-TEST(SensorNoise, HasItsRmsAndIsWhite) {
+TEST(SensorNoise, IsWhiteWithTheGivenRms) {
   const std::vector<double> x = readings({0.05, 0.0}, 7, 100000, 0.001);
   double mean = 0, fourth = 0;
   for (const double v : x) {
@@ -47,14 +47,14 @@ TEST(SensorNoise, HasItsRmsAndIsWhite) {
   for (std::size_t lag = 1; lag < 20; ++lag) EXPECT_NEAR(correlation(x, lag), 0, 0.013) << lag;
 }
 
-TEST(SensorNoise, ForgetsWithItsCorrelationTime) {
+TEST(SensorNoise, IsCorrelatedOverTheGivenTime) {
   const std::vector<double> x = readings({0.05, 0.02}, 7, 100000, 0.005);
   EXPECT_NEAR(rms(x) / 0.05, 1, 0.03);
   EXPECT_NEAR(correlation(x, 1), std::exp(-0.25), 0.02);
   EXPECT_NEAR(correlation(x, 4), std::exp(-1.0), 0.03);
 }
 
-TEST(SensorNoise, SameSeedSameNoiseOtherSeedOtherNoise) {
+TEST(SensorNoise, OnlyEqualSeedsGiveEqualNoise) {
   EXPECT_EQ(readings({0.05, 0.1}, 3, 100, 0.01), readings({0.05, 0.1}, 3, 100, 0.01));
   const auto a = readings({0.05, 0.0}, 3, 10000, 0.01);
   const auto b = readings({0.05, 0.0}, 4, 10000, 0.01);
@@ -63,7 +63,7 @@ TEST(SensorNoise, SameSeedSameNoiseOtherSeedOtherNoise) {
   EXPECT_NEAR(product / 10000 / (0.05 * 0.05), 0, 0.04);
 }
 
-TEST(SensorNoise, GoldenFirstNumbers) {
+TEST(SensorNoise, FirstRandomNumbersAreUnchanged) {
   // The test fails if the output of the random generator changes, because simulated recordings would then
   // differ from earlier ones.
   const auto x = readings({1.0, 0.0}, 1, 3, 0.01);
@@ -72,7 +72,7 @@ TEST(SensorNoise, GoldenFirstNumbers) {
   EXPECT_NEAR(uniform_at(1, 1), 0.9140224628703029, 1e-16);
 }
 
-TEST(SensorNoise, AStepWithoutDurationDrawsNothing) {
+TEST(SensorNoise, AStepWithoutDurationDrawsNoRandomNumber) {
   Block block = make<Block>({0.05, 0.0});
   const double first = block.sample(0.0, 0.01, {});
   EXPECT_EQ(block.sample(3.0, 0.0, {}), 3.0 + first);

@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorNonlinearity<double>;
 
-TEST(SensorNonlinearity, RightAtTheEndsWrongInBetween) {
+TEST(SensorNonlinearity, ErrorIsZeroAtBothEndsAndHasTheGivenAmplitude) {
   Block bow = make<Block>({0.3, 0.0, 30.0});
   EXPECT_NEAR(bow.sample(0.0, 0.1, {}), 0, 1e-15);
   EXPECT_NEAR(bow.sample(15.0, 0.1, {}), 15.3, 1e-12);
@@ -24,7 +24,7 @@ TEST(SensorNonlinearity, RightAtTheEndsWrongInBetween) {
   EXPECT_NEAR(largest, 0.3, 1e-6);
 }
 
-TEST(SensorNonlinearity, GoesOnStraightOutsideItsRange) {
+TEST(SensorNonlinearity, ContinuesLinearlyOutsideTheRange) {
   Block block = make<Block>({0.3, 0.2, 30.0});
   for (const double end : {0.0, 30.0}) {
     const double h = 1e-6;

@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorSaturation<double>;
 
-TEST(SensorSaturation, Clips) {
+TEST(SensorSaturation, ClipsReadingsAtBothLimits) {
   Block block = make<Block>({-1.0, 20.0});
   EXPECT_EQ(block.sample(-3.0, 0.1, {}), -1);
   EXPECT_EQ(block.sample(7.0, 0.1, {}), 7);

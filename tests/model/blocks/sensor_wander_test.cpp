@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorWander<double>;
 
-TEST(SensorWander, WandersToAndFroFromZero) {
+TEST(SensorWander, DriftIsTheSumOfTwoSinusoids) {
   Block block = make<Block>({0.3, 0.2, 200.0});
   Surroundings around;
   for (const auto& [time_s, drift_mm] : std::vector<std::pair<double, double>>{

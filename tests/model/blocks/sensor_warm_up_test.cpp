@@ -12,7 +12,7 @@ namespace {
 
 using Block = SensorWarmUp<double>;
 
-TEST(SensorWarmUp, DriftsOverATime) {
+TEST(SensorWarmUp, DriftApproachesTheFinalValueExponentially) {
   Block block = make<Block>({0.5, 60.0});
   Surroundings around;
   for (const double time_s : {0.0, 60.0, 3600.0}) {

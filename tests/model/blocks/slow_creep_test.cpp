@@ -12,7 +12,7 @@ namespace {
 
 using Block = SlowCreep<double>;
 
-TEST(SlowCreep, IsOneMoreBranch) {
+TEST(SlowCreep, CreepsExponentiallyAtConstantPressure) {
   Block block = make<Block>({0.05, 60.0});
   double from = 0;
   move(block, from, 30, 0);
@@ -23,7 +23,7 @@ TEST(SlowCreep, IsOneMoreBranch) {
   EXPECT_NEAR(block.output(), 1.5, 1e-12);
 }
 
-TEST(SlowCreep, RampInOneStepOrMany) {
+TEST(SlowCreep, RampResponseIsIndependentOfTheStepSize) {
   Block once = make<Block>({0.05, 60.0}), often = make<Block>({0.05, 60.0});
   double a = 0, b = 0;
   for (int i = 1; i <= 500; ++i) move(often, b, 0.1 * i, 0.2);

@@ -12,7 +12,7 @@ namespace {
 
 using Block = Stiffening<double>;
 
-TEST(Stiffening, GainFallsWithDisplacementBothWaysAlike) {
+TEST(Stiffening, GainDecreasesSymmetricallyWithTheDisplacement) {
   Block block = make<Block>({0.02});
   const auto out = drive(block, 0, std::vector<double>{10, 20, 10, -10}, 0.1);
   EXPECT_NEAR(out[0], 10 / 1.2, 1e-12);
@@ -20,7 +20,7 @@ TEST(Stiffening, GainFallsWithDisplacementBothWaysAlike) {
   EXPECT_EQ(out[3], -out[0]);
 }
 
-TEST(Stiffening, MonotoneAndSmoothForEverySign) {
+TEST(Stiffening, OutputIsMonotoneAndSmoothForEverySign) {
   for (const double s : {-0.5, -0.02, 0.0, 0.02, 0.5}) {
     Block block = make<Block>({s});
     double last = -1e9;

@@ -12,7 +12,7 @@ namespace {
 
 using Block = StressSoftening<double>;
 
-TEST(StressSoftening, LaterLoadsFindItSofter) {
+TEST(StressSoftening, GainIncreasesWithTheLargestLoad) {
   Block block = make<Block>({0.01, 0.0});
   const std::vector<double> out = drive(block, 0, std::vector<double>{20, 0, 10, 20, 40, 10}, 1.0);
   EXPECT_NEAR(out[0], 20 * 1.2, 1e-12);
@@ -24,7 +24,7 @@ TEST(StressSoftening, LaterLoadsFindItSofter) {
   EXPECT_EQ(block.largest_kpa(), 40);
 }
 
-TEST(StressSoftening, MeanOfARiseBeyondTheLargestLoad) {
+TEST(StressSoftening, MeanIsCorrectForARiseBeyondTheLargestLoad) {
   Block once = make<Block>({0.01, 0.0}), often = make<Block>({0.01, 0.0});
   for (Block* block : {&once, &often}) drive(*block, 0, std::vector<double>{20, 0}, 1.0);
   double mean = 0, fine = 0;
@@ -38,7 +38,7 @@ TEST(StressSoftening, MeanOfARiseBeyondTheLargestLoad) {
   EXPECT_NEAR(once.output(), often.output(), 1e-12);
 }
 
-TEST(StressSoftening, LevelsOffWithLargerLoads) {
+TEST(StressSoftening, SofteningSaturatesForLargerLoads) {
   Block block = make<Block>({0.01, 0.05});
   const std::vector<double> out = drive(block, 0, std::vector<double>{20, 10, 40, 10}, 1.0);
   EXPECT_NEAR(out[0], 20 * (1 + 0.2 / 2), 1e-12);

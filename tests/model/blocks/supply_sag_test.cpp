@@ -18,7 +18,7 @@ Surroundings supply(double kpa) {
   return around;
 }
 
-TEST(SupplySag, FollowsTheShareOfTheLoss) {
+TEST(SupplySag, PressureLossIsProportionalToTheLossOfSupply) {
   Block block = make<Block>({0.5, 500.0});
   pass(block, Segment<double>::straight(1.0, 0, 40), supply(400));
   EXPECT_NEAR(block.output(), 40 * (1 - 0.5 * 0.2), 1e-12);
@@ -26,13 +26,13 @@ TEST(SupplySag, FollowsTheShareOfTheLoss) {
   EXPECT_EQ(block.output(), 40);
 }
 
-TEST(SupplySag, WithoutAKnownSupplyNothingIsLost) {
+TEST(SupplySag, HasNoEffectIfTheSupplyIsUnknown) {
   Block block = make<Block>({1.0, 10000.0});
   pass(block, Segment<double>::straight(1.0, 0, 40));
   EXPECT_EQ(block.output(), 40);
 }
 
-TEST(SupplySag, PiecesJoin) {
+TEST(SupplySag, OutputSegmentsAreContinuous) {
   Block block = make<Block>({0.5, 500.0});
   double last = 0, from = 0;
   for (int i = 1; i < 200; ++i) {

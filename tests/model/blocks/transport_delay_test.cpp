@@ -44,7 +44,7 @@ TEST(TransportDelay, ShiftsAnyPiecewiseLinearSignalByAnyDelay) {
   }
 }
 
-TEST(TransportDelay, PiecesSumToTheSampleAndJoin) {
+TEST(TransportDelay, OutputSegmentsAreContinuousAndPreserveTheIntegral) {
   const std::vector<double> corners = random_corners(12, 300);
   Block block = make<Block>({0.0437});
   double last = 0;
@@ -82,7 +82,7 @@ TEST(TransportDelay, AKinkInsideASampleMakesTwoSegments) {
   EXPECT_NEAR(out[1].end, 4, 1e-12);
 }
 
-TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
+TEST(TransportDelay, ADelayOfWholeSamplesGivesOneSegmentPerSample) {
   // The delay of 0.13 s is 26 steps of 0.005 s, apart from a rounding error. This rounding error must not
   // divide every following sample into a very short segment and a long one.
   for (const double delay : {0.13, 0.3, 0.07, 0.005}) {
@@ -94,7 +94,7 @@ TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
   }
 }
 
-TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
+TEST(TransportDelay, AStepInputStaysAStep) {
   // The delay is exactly 3 samples, so the jump must appear at the start of the fourth sample.
   for (const double sample_time : {0.0, 0.1}) {
     Block block = make<Block>({0.3}, sample_time);
@@ -108,7 +108,7 @@ TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
   }
 }
 
-TEST(TransportDelay, WithoutDelayASampleAndAJumpPass) {
+TEST(TransportDelay, ZeroDelayPassesASampleAndAStepUnchanged) {
   Block block = make<Block>({0.0});
   EXPECT_EQ(pass(block, Segment<double>::straight(0, 0, 5)).size(), 1u);
   EXPECT_EQ(block.output(), 5);
@@ -130,7 +130,7 @@ TEST(TransportDelay, KeepsTheMeanOfACurvedSignal) {
   EXPECT_NEAR(first.back().end, curved.at(0.65), 1e-12);
 }
 
-TEST(TransportDelay, RestFillsTheLine) {
+TEST(TransportDelay, ResetFillsTheDelayLine) {
   Block block = make<Block>({0.2});
   block.reset(7.0);
   pass(block, Segment<double>::straight(0.1, 7, 0));

@@ -17,7 +17,7 @@ TEST(ValveDeadband, IgnoresReversalsSmallerThanTheBand) {
   EXPECT_EQ(drive(block, 0, in, 0.1), (std::vector<double>{9, 9, 9, 9, 9, 8, 8, 8, 9}));
 }
 
-TEST(ValveDeadband, CutsWhereThePressureBeginsToMove) {
+TEST(ValveDeadband, SplitsTheSegmentWhereThePressureBeginsToChange) {
   Block block = make<Block>({2.0});
   const auto out = pass(block, Segment<double>::straight(1.0, 0, 10));
   ASSERT_EQ(out.size(), 2u);

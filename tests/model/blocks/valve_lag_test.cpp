@@ -12,7 +12,7 @@ namespace {
 
 using Block = ValveLag<double>;
 
-TEST(ValveLag, StepAndRampResponsesAreTheTextbookOnes) {
+TEST(ValveLag, StepAndRampResponsesMatchTheAnalyticalSolution) {
   for (const double t : {1e-6, 0.01, 0.5, 30.0}) {
     Block step = make<Block>({0.05});
     pass(step, Segment<double>::straight(0, 0, 8));
@@ -40,7 +40,7 @@ TEST(ValveLag, MeanIsExact) {
   }
 }
 
-TEST(ValveLag, TurnsWhereItMeetsTheInput) {
+TEST(ValveLag, OutputPeaksWhereTheInputEqualsTheOutput) {
   Block block = make<Block>({0.05});
   pass(block, Segment<double>::straight(0.2, 0, 20));
   const auto out = pass(block, Segment<double>::straight(0.2, 20, 0));
@@ -59,7 +59,7 @@ TEST(ValveLag, TurnsWhereItMeetsTheInput) {
   }
 }
 
-TEST(ValveLag, EverySegmentIsMonotoneWithItsMeanInside) {
+TEST(ValveLag, EverySegmentIsMonotoneAndContainsTheMean) {
   Block block = make<Block>({0.03});
   double from = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -85,7 +85,7 @@ TEST(ValveLag, StepSizeDoesNotMatter) {
   }
 }
 
-TEST(ValveLag, FarFasterThanASampleItFollows) {
+TEST(ValveLag, FollowsTheInputIfMuchFasterThanTheSampleTime) {
   Block block = make<Block>({1e-7});
   const auto out = pass(block, Segment<double>::straight(0.01, 0, 10));
   EXPECT_NEAR(out.back().end, 10, 1e-3);

@@ -17,13 +17,13 @@ Block sticking(double band_kpa) {
   return make<Block>({band_kpa});
 }
 
-TEST(ValveStiction, SticksUntilTheCommandDiffersByTheBand) {
+TEST(ValveStiction, OutputIsConstantUntilTheCommandLeavesTheStickBand) {
   Block block = sticking(2.0);
   const std::vector<double> in{1.5, 2.5, 4.0, 3.0, 1.5, 1.0, 2.5, 9.0};
   EXPECT_EQ(drive(block, 0, in, 1.0), (std::vector<double>{0, 2, 2, 2, 2, 2, 2, 8}));
 }
 
-TEST(ValveStiction, SeveralJumpsOfOneSegmentComeAtTheirTimes) {
+TEST(ValveStiction, SeveralJumpsWithinASegmentOccurAtTheCorrectTimes) {
   Block block = sticking(2.0);
   const auto out = pass(block, Segment<double>::straight(1.0, 0, 5));
   ASSERT_EQ(out.size(), 5u);
@@ -54,7 +54,7 @@ TEST(ValveStiction, StaircaseDoesNotDependOnTheStepSize) {
 // Compares the block with the usual algorithm, which compares the command with the held value at many sample
 // times. The usual algorithm detects a jump slightly late, and its jump is slightly too large. The two
 // outputs may therefore differ when the command is close to the threshold of a jump.
-TEST(ValveStiction, IsTheHoldAndJumpOfARegulatorThatLooksVeryOften) {
+TEST(ValveStiction, AgreesWithADenselySampledSlipJumpModel) {
   constexpr double band = 1.7;
   Block block = sticking(band);
   double held = 0, from = 0;
@@ -73,7 +73,7 @@ TEST(ValveStiction, IsTheHoldAndJumpOfARegulatorThatLooksVeryOften) {
   }
 }
 
-TEST(ValveStiction, FollowsWhatIsTooFastToStick) {
+TEST(ValveStiction, FollowsAFastCommandWithoutSticking) {
   Block block = sticking(2.0);
   const auto out = pass(block, Segment<double>::straight(0.005, 0, 49));
   ASSERT_EQ(out.size(), 3u);  // three segments: the time until the valve breaks free, the jump, and the rest
@@ -88,7 +88,7 @@ TEST(ValveStiction, FollowsWhatIsTooFastToStick) {
   EXPECT_EQ(block.output(), 20);
 }
 
-TEST(ValveStiction, WithoutABandNothingSticks) {
+TEST(ValveStiction, HasNoEffectWithoutAStickBand) {
   Block block = sticking(0.0);
   for (const double dt : {0.0, 1e-3, 1.0}) {
     block.reset(5.0);
@@ -99,7 +99,7 @@ TEST(ValveStiction, WithoutABandNothingSticks) {
   }
 }
 
-TEST(ValveStiction, JumpsKeepTimeAndContinuity) {
+TEST(ValveStiction, PreservesDurationAndContinuity) {
   Block block = sticking(1.3);
   std::mt19937 generator(17);
   std::uniform_real_distribution<double> value(-5, 60), length(1e-4, 0.2);
@@ -121,7 +121,7 @@ TEST(ValveStiction, JumpsKeepTimeAndContinuity) {
   }
 }
 
-TEST(ValveStiction, RestsWhereASlowRiseLeadsWithJumps) {
+TEST(ValveStiction, ResetReachesTheOutputOfASlowRise) {
   Block rested = sticking(1.3), risen = sticking(1.3);
   rested.reset(35.0);
   pass(risen, Segment<double>::straight(10, 0, 35));

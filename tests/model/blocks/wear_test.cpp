@@ -12,7 +12,7 @@ namespace {
 
 using Block = Wear<double>;
 
-TEST(Wear, WearsWithTheWayGoneInTheCampaign) {
+TEST(Wear, GainChangesWithTheTotalTravelAcrossLogs) {
   Block block = make<Block>({-2.0});
   Surroundings around;
   around.time_s = 30;

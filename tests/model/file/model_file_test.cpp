@@ -57,7 +57,7 @@ Model random_model(std::mt19937& generator) {
   return model;
 }
 
-TEST(ModelFile, RandomModelsComeBackBitForBit) {
+TEST(ModelFile, RandomModelsRoundTripExactly) {
   std::mt19937 generator(77);
   for (int round = 0; round < 500; ++round) {
     const Model model = random_model(generator);
@@ -68,7 +68,7 @@ TEST(ModelFile, RandomModelsComeBackBitForBit) {
   }
 }
 
-TEST(ModelFile, TheOutputUnitComesBackAndIsMillimetresWhereItIsLeftOut) {
+TEST(ModelFile, OutputUnitRoundTripsAndDefaultsToMillimetres) {
   std::mt19937 generator(1);
   Model model = random_model(generator);
   const std::string in_mm = to_yaml(model);
@@ -93,7 +93,7 @@ TEST(ModelFile, ARigRefusesAModelInDegrees) {
   EXPECT_NE(problems.list().front().message.find("a rig measures and controls in mm"), std::string::npos);
 }
 
-TEST(ModelFile, PresetsComeBackBitForBit) {
+TEST(ModelFile, PresetsRoundTripExactly) {
   for (const std::string name : {"zhang2025", "bench_twin", "soft_arm_play"}) {
     const Model model = preset(name);
     const Outcome outcome = read(to_yaml(model));
@@ -102,7 +102,7 @@ TEST(ModelFile, PresetsComeBackBitForBit) {
   }
 }
 
-TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
+TEST(ModelFile, PresetsContainThePublishedValues) {
   const Model published = preset("zhang2025");
   EXPECT_EQ(number(published, "bouc_wen.alpha_mm_per_kpa"), 0.07079);
   EXPECT_EQ(number(published, "bouc_wen.eta_per_kpa"), 0.02);
@@ -131,7 +131,7 @@ std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& 
 
 // The first version of the file format does not have these parameters. They are optional, so that files of
 // the first version have the same meaning as before.
-TEST(ModelFile, LaterParametersMayBeLeftOut) {
+TEST(ModelFile, ParametersOfLaterVersionsAreOptional) {
   EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
             (std::vector<BlockSpec>{{block_type<SensorWander>(), {0.1, 0, 300}}}));
   EXPECT_EQ(blocks_of("actuator", "asymmetric_bouc_wen: {epsilon_per_kpa: 0.01}"),
@@ -147,7 +147,7 @@ struct Earlier {
 // Some blocks of earlier versions have been divided into several blocks. The new blocks must all belong to
 // the same component (valve, actuator, load or sensor), because an older file lists the original block under
 // one component.
-TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
+TEST(ModelFile, EachFormerBlockMapsToBlocksOfOneComponent) {
   EXPECT_EQ(find_earlier_block("valve_lag"), nullptr);
   for (const char* id :
        {"valve_deadband", "asymmetric_hysteresis", "rate_dependent_hysteresis", "ageing", "sensor_drift"}) {
@@ -161,7 +161,7 @@ TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
 
 // Some blocks of earlier versions contained several mechanisms. The reader must convert such a block to the
 // blocks of the present version.
-TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
+TEST(ModelFile, ConvertsFormerBlocksToPresentBlocks) {
   const std::vector<Earlier> files{
       {"valve", "valve_deadband: {band_kpa: 2}", {{block_type<ValveDeadband>(), {2}}}},
       {"valve", "valve_deadband: {band_kpa: 2, form: 0}", {{block_type<ValveDeadband>(), {2}}}},
@@ -215,7 +215,7 @@ TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
 
 // In earlier versions, the block `ageing` added the gains of its two mechanisms. The present blocks multiply
 // the two gains. Therefore the reader must refuse an older file that uses both mechanisms.
-TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
+TEST(ModelFile, RefusesAFormerBlockWithoutAnEquivalent) {
   const Outcome outcome = read_with("actuator", "ageing: {gain_per_h: 0.1, run_in: 0.2, run_in_time_s: 40}");
   EXPECT_FALSE(outcome.model);
   ASSERT_EQ(outcome.problems.size(), 1u) << outcome.problems.format();
@@ -227,7 +227,7 @@ TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
       << problem.hint;
 }
 
-TEST(ModelFile, EarlierBlocksAreCheckedLikeOthers) {
+TEST(ModelFile, ChecksTheParametersOfFormerBlocks) {
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
            {"asymmetric_hysteresis: {gain_mm_per_kpa: 0.05}", "unloading_kpa"},
            {"asymmetric_hysteresis: {gain_mm_per_kpa: 0.05, unloading_kpa: 15, loading_kpa: 5, delta: 1}",
@@ -242,7 +242,7 @@ TEST(ModelFile, EarlierBlocksAreCheckedLikeOthers) {
   }
 }
 
-TEST(ModelFile, HashStandsForTheNumbers) {
+TEST(ModelFile, HashDependsOnTheParameterValues) {
   const Model twin = preset("bench_twin");
   EXPECT_EQ(model_hash(twin).size(), 16u);
   EXPECT_EQ(model_hash(twin), model_hash(preset("bench_twin")));
@@ -325,7 +325,7 @@ const std::vector<Broken> broken_files{
      4, "one key"},
 };
 
-TEST(ModelFile, BrokenFilesAreRefusedWhereTheyAreBroken) {
+TEST(ModelFile, RefusesMalformedFilesWithTheLineOfTheError) {
   for (const Broken& broken : broken_files) {
     if (std::string(broken.text).find("sensor_lag") != std::string::npos && !find_block("sensor_lag"))
       continue;
@@ -342,7 +342,7 @@ TEST(ModelFile, BrokenFilesAreRefusedWhereTheyAreBroken) {
   }
 }
 
-TEST(ModelFile, AllErrorsAtOnce) {
+TEST(ModelFile, ReportsAllErrorsTogether) {
   const Outcome outcome = read(
       "nam: a\nsource: b\nvalve:\n  - valve_lag: {time_constant: 0.1}\n  - pressure_saturation: {limit_kpa: "
       "-5}\n"
@@ -354,14 +354,14 @@ TEST(ModelFile, AllErrorsAtOnce) {
   EXPECT_FALSE(outcome.model);
 }
 
-TEST(ModelFile, EmptyStationsMayStandOrNot) {
+TEST(ModelFile, AcceptsEmptyAndMissingComponents) {
   const Outcome outcome = read(
       "name: a\nsource: b\nvalve: []\nactuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 300, k1_kpa_per_mm: 5, "
       "c1_kpa_s_per_mm: 9}\nload: []\n");
   EXPECT_TRUE(outcome.model) << outcome.problems.format();
 }
 
-TEST(ModelFile, AFileThatIsNotThereIsAProblem) {
+TEST(ModelFile, ReportsAMissingModelFile) {
   document::Problems problems;
   EXPECT_FALSE(load_model("/nowhere/model.yaml", problems));
   EXPECT_FALSE(problems.empty());

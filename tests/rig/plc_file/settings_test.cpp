@@ -48,7 +48,7 @@ TEST(PlcSettings, TheShippedFileIsRead) {
   EXPECT_DOUBLE_EQ(settings->registers.of_one(Name::squeeze), 0.01);
 }
 
-TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
+TEST(PlcSettings, InvalidSettingsAreReportedWithTheReason) {
   EXPECT_NE(said_of("address: 101", "address: 100").find("belongs to both 'map_version' and 'done_counter'"),
             std::string::npos);
   EXPECT_NE(said_of("first: 120", "first: 100").find("address 100"), std::string::npos);
@@ -67,7 +67,7 @@ TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said_of("silence_s", "silence_ms").find("silence_s"), std::string::npos);
 }
 
-TEST(PlcSettings, BeyondThisMachineMastersAreNamed) {
+TEST(PlcSettings, ANetworkAddressRequiresAListOfClients) {
   const std::string said = said_of(
       "address: 127.0.0.1            # loopback; for a PLC the address of this computer in "
       "the machine's network\n  port: 502\n  allow: [127.0.0.1]",

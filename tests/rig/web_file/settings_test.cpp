@@ -23,7 +23,7 @@ std::string said_of(const std::string& was, const std::string& is) {
   return problems.format();
 }
 
-TEST(WebSettings, TheShippedFileIsReadAndLetsNobodyOperate) {
+TEST(WebSettings, TheShippedFileGivesReadOnlyAccessWithoutAToken) {
   document::Problems problems;
   const auto settings = load_settings(SOFTGRIP_SOURCE_DIR "/config/web.yaml", problems);
   ASSERT_TRUE(settings) << problems.format();
@@ -34,14 +34,14 @@ TEST(WebSettings, TheShippedFileIsReadAndLetsNobodyOperate) {
   EXPECT_EQ(settings->recordings, "/var/lib/softgrip/runs");
 }
 
-TEST(WebSettings, BeyondThisMachineThereAreTokensAndNothingWithoutThem) {
+TEST(WebSettings, ANetworkAddressRequiresTokens) {
   const std::string said = said_of("address: 127.0.0.1", "address: 0.0.0.0");
   EXPECT_NE(said.find("each client needs a token"), std::string::npos) << said;
   EXPECT_NE(said.find("`tokens` must name a file"), std::string::npos) << said;
   EXPECT_EQ(said_of("address: 127.0.0.1", "address: \"::1\""), "");
 }
 
-TEST(WebSettings, WhatIsWrongIsSaidWhereItStands) {
+TEST(WebSettings, InvalidSettingsAreReportedWithTheReason) {
   EXPECT_NE(said_of("address: 127.0.0.1", "address: gripper").find("not a numeric address"),
             std::string::npos);
   EXPECT_NE(said_of("hosts: []", "hosts: ['http://gripper']").find("not the name of a computer"),

@@ -60,7 +60,7 @@ struct Client {
 /// reconnects after each time-out. Each new connection begins with another 0.4 s without responses, so this
 /// client never gets a response. The settle time does not delay safe outputs, because the board would ignore
 /// every write during the 0.4 s.
-TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
+TEST(BoardHabits, ABoardThatIgnoresFirstRequestsIsReachedAfterSettling) {
   RunningRig rig(rig_with(settling(0.4)));
   ModbusSettings settings = rig.board();
   settings.probes = 0;
@@ -111,7 +111,7 @@ TEST(BoardHabits, ALostRequestIsRepeatedWithinTheDeadline) {
   }
 }
 
-TEST(BoardHabits, AGatewayThatReturnsAnotherTransactionIdIsTakenOnlyWhereThatIsAccepted) {
+TEST(BoardHabits, AcceptsAWrongTransactionIdOnlyIfConfigured) {
   RunningRig rig(rig_with(fault_of(FaultKind::wrong_transaction)));
   ModbusSettings settings = rig.board();
   EXPECT_EQ(Client(settings).board.connect(generous), BusStatus::bad_reply);
@@ -132,7 +132,7 @@ ModbusSettings with_rtu_frames(ModbusSettings settings) {
   return settings;
 }
 
-TEST(BoardHabits, RtuFramesOverTcp) {
+TEST(BoardHabits, ExchangesRtuFramesOverTcp) {
   RunningRig rig(serial_server(settling(0)));
   ModbusSettings settings = rig.board();
   EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out)
@@ -201,7 +201,7 @@ TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   }
 }
 
-TEST(BoardHabits, ABoardThatSwapsTheBytesOfItsRegistersIsReadByItsWordOrder) {
+TEST(BoardHabits, TheWordOrderDecodesSwappedBytes) {
   for (const auto order :
        {drivers::WordOrder::high_first_bytes_swapped, drivers::WordOrder::low_first_bytes_swapped}) {
     RunningRigSettings settings = rig_with(settling(0));

@@ -43,14 +43,14 @@ TEST(EmulatedBoard, OutputsFollowTheMapsScaling) {
   EXPECT_EQ(read_one(board, 0, 0x03, 11), 819);
 }
 
-TEST(EmulatedBoard, ARawNumberBeyondTheConverterIsItsEnd) {
+TEST(EmulatedBoard, LimitsARawValueToTheRangeOfTheConverter) {
   EmulatedBoard board(adam());
   board.answer(0, write_outputs(5000, 0xffff));
   EXPECT_NEAR(board.output(0), 10, 1e-12);
   EXPECT_EQ(read_one(board, 0, 0x04, 10), 4095);
 }
 
-TEST(EmulatedBoard, ShowsHowManyClientsItHasWhereTheMapHasARegisterForIt) {
+TEST(EmulatedBoard, ShowsTheClientCountIfTheMapHasARegister) {
   drivers::BoardMap map = adam();
   EmulatedBoard silent(map);
   silent.count_clients(2);
@@ -79,7 +79,7 @@ TEST(EmulatedBoard, InputsShowVoltsAndTheirStatus) {
   EXPECT_EQ(read_one(board, 0, 0x04, 22), 2);
 }
 
-TEST(EmulatedBoard, WatchdogVentsAndSaysSo) {
+TEST(EmulatedBoard, TheWatchdogVentsAndReportsTheTrip) {
   drivers::BoardMap map = adam();
   map.watchdog.timeout_s = 0.5;
   EmulatedBoard board(map);
@@ -105,7 +105,7 @@ TEST(EmulatedBoard, AnyRequestFeedsTheWatchdog) {
   EXPECT_FALSE(board.tripped());
 }
 
-TEST(EmulatedBoard, OnlyTheMapsFunctionsFeedAWatchdogThatIsPicky) {
+TEST(EmulatedBoard, OnlyConfiguredFunctionsResetTheWatchdogTimer) {
   drivers::BoardMap map = adam();
   map.watchdog.feed = drivers::BoardWatchdog::Feed::functions;
   map.watchdog.functions = {0x10};
@@ -151,7 +151,7 @@ TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
   EXPECT_GT(board.output(0), 4);
 }
 
-TEST(EmulatedBoard, IgnoredWritesAreAnswered) {
+TEST(EmulatedBoard, IgnoredWritesAreConfirmed) {
   EmulatedBoard board(adam());
   board.answer(0, write_outputs(1000, 1000));
   board.ignore_writes(true);

@@ -65,7 +65,7 @@ class EmulatorTest : public testing::Test {
   }
 };
 
-TEST_F(EmulatorTest, TheFingerMovesAsItsModelDoes) {
+TEST_F(EmulatorTest, TheFingerFollowsTheCommand) {
   Emulator emulator(settings());
   command(emulator, 0, 40);
   keep_alive(emulator, 5 * second);
@@ -76,7 +76,7 @@ TEST_F(EmulatorTest, TheFingerMovesAsItsModelDoes) {
   EXPECT_NEAR(reading_mm(emulator, 5 * second, 1), emulator.fingers()[1].plant().displacement_mm(), 0.002);
 }
 
-TEST_F(EmulatorTest, TheResultDoesNotDependOnHowOftenItIsAsked) {
+TEST_F(EmulatorTest, TheMotionIsIndependentOfTheRequestRate) {
   Emulator often(settings());
   Emulator seldom(settings());
   for (Emulator* emulator : {&often, &seldom}) command(*emulator, 0, 40);
@@ -87,7 +87,7 @@ TEST_F(EmulatorTest, TheResultDoesNotDependOnHowOftenItIsAsked) {
               1e-9);
 }
 
-TEST_F(EmulatorTest, ASilentClientIsVentedWhenTheMapSays) {
+TEST_F(EmulatorTest, VentsAfterTheWatchdogTimeWithoutRequests) {
   Emulator emulator(settings());
   command(emulator, 0, 40);
   emulator.advance(second / 2 - 1);
@@ -97,13 +97,13 @@ TEST_F(EmulatorTest, ASilentClientIsVentedWhenTheMapSays) {
   EXPECT_EQ(emulator.watchdog_trips(), 1U);
 }
 
-TEST_F(EmulatorTest, AnotherUnitIsNotHere) {
+TEST_F(EmulatorTest, AnotherUnitIdReceivesAnException) {
   Emulator emulator(settings());
   EXPECT_EQ(ask(emulator, 0, {0x04, 0, 0, 0, 1}, 2).pieces.at(0).bytes,
             (Bytes{0, 7, 0, 0, 0, 3, 2, 0x84, 11}));
 }
 
-TEST_F(EmulatorTest, ALostRequestIsNotCarriedOutAndFeedsNothing) {
+TEST_F(EmulatorTest, ALostRequestHasNoEffectOnOutputsAndWatchdog) {
   Emulator emulator(settings({fault("cut", FaultKind::lost_request)}));
   command(emulator, 0, 40);
   EXPECT_TRUE(emulator.trigger("cut", second / 10));
@@ -113,14 +113,14 @@ TEST_F(EmulatorTest, ALostRequestIsNotCarriedOutAndFeedsNothing) {
   EXPECT_TRUE(emulator.tripped());
 }
 
-TEST_F(EmulatorTest, AnUnansweredRequestIsCarriedOut) {
+TEST_F(EmulatorTest, ARequestWithALostResponseIsExecuted) {
   Emulator emulator(settings({fault("mute", FaultKind::no_reply)}));
   emulator.trigger("mute", 0);
   EXPECT_FALSE(command(emulator, 0, 40));
   EXPECT_GT(emulator.fingers()[0].plant().held_command_kpa(), 39);
 }
 
-TEST_F(EmulatorTest, ADisconnectKeepsClientsOut) {
+TEST_F(EmulatorTest, ADisconnectFaultRefusesClients) {
   Emulator emulator(settings({fault("cut", FaultKind::disconnect)}));
   EXPECT_TRUE(emulator.reachable());
   emulator.trigger("cut", 0);
@@ -130,7 +130,7 @@ TEST_F(EmulatorTest, ADisconnectKeepsClientsOut) {
   EXPECT_TRUE(emulator.reachable());
 }
 
-TEST_F(EmulatorTest, FaultsByTheClockCountFromTheFirstCommand) {
+TEST_F(EmulatorTest, ScheduledFaultsCountFromTheFirstCommand) {
   FaultSpec mute = fault("mute", FaultKind::no_reply);
   mute.at_s = 1;
   mute.for_s = 0.5;
@@ -143,7 +143,7 @@ TEST_F(EmulatorTest, FaultsByTheClockCountFromTheFirstCommand) {
   EXPECT_TRUE(command(emulator, 11 * second + 500 * millisecond, 10));
 }
 
-TEST_F(EmulatorTest, AStuckSensorOfOneChannelSticks) {
+TEST_F(EmulatorTest, AStuckSensorAffectsOnlyOneChannel) {
   FaultSpec stuck = fault("stuck", FaultKind::sensor_stuck);
   stuck.channel = 1;
   Emulator emulator(settings({stuck}));
@@ -161,7 +161,7 @@ TEST_F(EmulatorTest, AStuckSensorOfOneChannelSticks) {
   EXPECT_GT(reading_mm(emulator, 2 * second + millisecond, 1), before_mm + 3);
 }
 
-TEST_F(EmulatorTest, AJumpingSensorJumpsToAndFro) {
+TEST_F(EmulatorTest, AJumpingSensorAlternatesBetweenTwoValues) {
   FaultSpec jumping = fault("jumping", FaultKind::sensor_jumping);
   jumping.sensor.value_mm = 4;
   jumping.interval_s = 0.1;
@@ -172,7 +172,7 @@ TEST_F(EmulatorTest, AJumpingSensorJumpsToAndFro) {
   EXPECT_NEAR(reading_mm(emulator, 250 * millisecond, 0), 4, 0.01);
 }
 
-TEST_F(EmulatorTest, ASensorOutOfRangeShowsTheUpperEndAndItsStatus) {
+TEST_F(EmulatorTest, AnOutOfRangeSensorShowsTheUpperLimitAndTheStatus) {
   Emulator emulator(settings({fault("blind", FaultKind::sensor_out_of_range)}));
   emulator.trigger("blind", 0);
   emulator.advance(millisecond);
@@ -181,7 +181,7 @@ TEST_F(EmulatorTest, ASensorOutOfRangeShowsTheUpperEndAndItsStatus) {
       << "the input status must be 1, which means above the range";
 }
 
-TEST_F(EmulatorTest, LinesBlockAndLeak) {
+TEST_F(EmulatorTest, ALineFaultBlocksOrReducesThePressure) {
   FaultSpec leaking = fault("leaking", FaultKind::line_leaking);
   leaking.line.share = 0.25;
   leaking.channel = 0;
@@ -198,7 +198,7 @@ TEST_F(EmulatorTest, LinesBlockAndLeak) {
   EXPECT_NEAR(emulator.fingers()[1].plant().pressure_kpa(), 40, 0.1);
 }
 
-TEST_F(EmulatorTest, AnObjectStopsTheFingerUntilItIsPulledOut) {
+TEST_F(EmulatorTest, AnObjectLimitsTheMotionUntilRemoved) {
   Emulator free_emulator(settings());
   EmulatorSettings with_object = settings();
   for (auto& plant : with_object.plants) plant.object = object_named("10:0.1");
@@ -216,7 +216,7 @@ TEST_F(EmulatorTest, AnObjectStopsTheFingerUntilItIsPulledOut) {
   EXPECT_NEAR(emulator.fingers()[0].plant().displacement_mm(), free_mm, 0.01);
 }
 
-TEST_F(EmulatorTest, ControlLinesDoWhatTheySay) {
+TEST_F(EmulatorTest, ExecutesAndChecksControlCommands) {
   Emulator emulator(settings({fault("mute", FaultKind::no_reply)}));
   EXPECT_EQ(control(emulator, 0, "fault mute").line, "ok");
   auto status = nlohmann::json::parse(control(emulator, second, "status").line);

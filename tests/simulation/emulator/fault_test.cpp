@@ -65,7 +65,7 @@ TEST(FaultsFile, ReadsEveryKind) {
   EXPECT_EQ(faults[19].line.share, 0.3);
 }
 
-TEST(FaultsFile, SaysWhatIsWrongAndWhere) {
+TEST(FaultsFile, ErrorStatesTheMistakeAndTheLine) {
   EXPECT_NE(refused("faults:\n  - {name: a, kind: noreply}\n").find("no_reply"), std::string::npos);
   EXPECT_NE(refused("faults:\n  - {name: a, kind: late_reply}\n").find("delay_s"), std::string::npos);
   EXPECT_NE(refused("faults:\n  - {name: a, kind: no_reply, delay_s: 1}\n").find("faults.yaml:2"),
@@ -81,7 +81,7 @@ TEST(FaultsFile, SaysWhatIsWrongAndWhere) {
       << "a fault of duration 0 is refused because it would never occur";
 }
 
-TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
+TEST(FaultSchedule, FaultTimesCountFromTheStart) {
   FaultSchedule schedule(accepted("faults:\n  - {name: a, kind: no_reply, at_s: 2, for_s: 1}\n"));
   EXPECT_FALSE(schedule.advance(100 * second))
       << "the clock of the fault schedule does not run before start()";
@@ -113,7 +113,7 @@ TEST(FaultSchedule, TriggersAndClearsByName) {
   EXPECT_FALSE(schedule.clear("c"));
 }
 
-TEST(FaultSchedule, EndsWithItsLastReply) {
+TEST(FaultSchedule, AFaultEndsAfterTheGivenNumberOfResponses) {
   FaultSchedule schedule(accepted("faults:\n  - {name: a, kind: no_reply, replies: 2}\n"));
   schedule.trigger("a", 0);
   schedule.count_reply(0);

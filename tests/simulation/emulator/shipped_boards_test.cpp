@@ -81,7 +81,7 @@ class ShippedBoard : public testing::TestWithParam<Combination> {
   std::vector<model::Reading> readings_;
 };
 
-TEST_P(ShippedBoard, APressureThatIsWrittenMovesTheFingerThatIsRead) {
+TEST_P(ShippedBoard, ACommandMovesTheFingerOfTheSameChannel) {
   ASSERT_TRUE(hold(0, 100ms)) << board_->detail();
   const double at_rest_mm = readings_[0].displacement_mm;
   ASSERT_TRUE(hold(40, 2500ms)) << board_->detail();
@@ -105,7 +105,7 @@ TEST_P(ShippedBoard, APressureThatIsWrittenMovesTheFingerThatIsRead) {
   }
 }
 
-TEST_P(ShippedBoard, ZeroPressureIsZeroWhateverItsRawNumber) {
+TEST_P(ShippedBoard, AZeroCommandGivesZeroPressure) {
   ASSERT_TRUE(hold(30, 300ms)) << board_->detail();
   ASSERT_TRUE(hold(0, 100ms)) << board_->detail();
   for (const Finger& finger : rig_->stop().fingers()) {
@@ -114,7 +114,7 @@ TEST_P(ShippedBoard, ZeroPressureIsZeroWhateverItsRawNumber) {
   }
 }
 
-TEST_P(ShippedBoard, AWatchdogThatTripsIsSeenAndStaysUntilANewSession) {
+TEST_P(ShippedBoard, AWatchdogTripIsReportedUntilANewSession) {
   const drivers::BoardWatchdog& watchdog = output_map().watchdog;
   ASSERT_TRUE(hold(40, 300ms)) << board_->detail();
   std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(test_timeout_s * 2e3)));
@@ -141,7 +141,7 @@ TEST_P(ShippedBoard, AWatchdogThatTripsIsSeenAndStaysUntilANewSession) {
   EXPECT_NEAR(truth.fingers()[0].plant().held_command_kpa(), 20, 0.02);
 }
 
-TEST_P(ShippedBoard, WhileTheWatchdogHoldsTheOutputsNothingGetsThrough) {
+TEST_P(ShippedBoard, AWatchdogTripBlocksTheOutputs) {
   const drivers::BoardWatchdog& watchdog = output_map().watchdog;
   if (!watchdog.tripped.has_value()) GTEST_SKIP() << "the board does not report a trip";
   ASSERT_TRUE(hold(40, 200ms)) << board_->detail();

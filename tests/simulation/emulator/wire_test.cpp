@@ -24,26 +24,26 @@ Bytes only_piece(const Reply& reply) {
   return reply.pieces.empty() ? Bytes{} : reply.pieces[0].bytes;
 }
 
-TEST(WireFault, LeavesAGoodReplyAlone) {
+TEST(WireFault, AResponseWithoutALineFaultIsUnchanged) {
   EXPECT_EQ(only_piece(good_reply(Wire::tcp, request, pdu)), whole);
   EXPECT_EQ(only_piece(spoiled(FaultKind::sensor_stuck)), whole)
       << "a sensor fault must not change the bytes";
 }
 
-TEST(WireFault, SaysNothing) {
+TEST(WireFault, ALostRequestOrResponseSendsNoBytes) {
   EXPECT_TRUE(spoiled(FaultKind::lost_request).pieces.empty());
   EXPECT_TRUE(spoiled(FaultKind::no_reply).pieces.empty());
   EXPECT_FALSE(carried_out(FaultKind::lost_request));
   EXPECT_TRUE(carried_out(FaultKind::no_reply));
 }
 
-TEST(WireFault, IsLate) {
+TEST(WireFault, ALateResponseIsDelayed) {
   const Reply reply = spoiled(FaultKind::late_reply, 0.25);
   EXPECT_EQ(only_piece(reply), whole);
   EXPECT_EQ(reply.pieces[0].after, std::chrono::milliseconds(250));
 }
 
-TEST(WireFault, Drips) {
+TEST(WireFault, ADrippedResponseSendsSingleBytes) {
   const Reply reply = spoiled(FaultKind::dripped_reply, 0.01);
   ASSERT_EQ(reply.pieces.size(), whole.size());
   Bytes together;
@@ -54,7 +54,7 @@ TEST(WireFault, Drips) {
   EXPECT_EQ(together, whole);
 }
 
-TEST(WireFault, ChangesExactlyOneFieldOfTheHeader) {
+TEST(WireFault, AWrongHeaderDiffersInExactlyOneField) {
   Bytes expected = whole;
   expected[6] = 2;
   EXPECT_EQ(only_piece(spoiled(FaultKind::wrong_unit)), expected);
@@ -66,7 +66,7 @@ TEST(WireFault, ChangesExactlyOneFieldOfTheHeader) {
   EXPECT_EQ(only_piece(spoiled(FaultKind::wrong_length)), expected);
 }
 
-TEST(WireFault, CutsRepeatsRefusesAndHangsUp) {
+TEST(WireFault, CutRepeatedExceptionAndDisconnectFaultsAreCorrect) {
   EXPECT_EQ(only_piece(spoiled(FaultKind::cut_reply)), (Bytes{0x01, 0x02, 0, 0, 0}));
   const Reply twice = spoiled(FaultKind::repeated_reply);
   ASSERT_EQ(twice.pieces.size(), 2U);

@@ -32,7 +32,7 @@ void settle(Plant& plant, double command_kpa, double seconds) {
 }
 
 // Without an object, the displacement of a plant must equal the displacement of its model bit for bit.
-TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
+TEST(Plant, EqualsTheModelExactlyWithoutAnObject) {
   const unsigned seed = 5;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> command(0, 60);
@@ -51,7 +51,7 @@ TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
 }
 
 // Under a constant command, the displacement must not depend on the lengths of the simulation steps.
-TEST(Plant, AdvancingInPiecesIsTheSame) {
+TEST(Plant, DisplacementIsIndependentOfTheStepSize) {
   Plant coarse(settings_of(twin()));
   Plant fine(settings_of(twin()));
   for (const double command : {30.0, 10.0, 50.0}) {
@@ -63,7 +63,7 @@ TEST(Plant, AdvancingInPiecesIsTheSame) {
   }
 }
 
-TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
+TEST(Plant, AnObjectLimitsTheMotionUntilRemoved) {
   PlantSettings settings = settings_of(twin());
   Plant free(settings);
   settings.object = PlantObject{.position_mm = 5, .yielding = 0.1};
@@ -87,7 +87,7 @@ TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
       << "an object that was removed has no effect";
 }
 
-TEST(Plant, AModelThatHasAContactOfItsOwnKeepsIt) {
+TEST(Plant, AContactOfTheModelRemainsActive) {
   model::Model model = twin();
   model = model::with_block(model, {model::find_block("contact").value(), {4.0, 1.0}});
   Plant plant(settings_of(model));
@@ -101,7 +101,7 @@ TEST(Plant, AModelThatHasAContactOfItsOwnKeepsIt) {
   EXPECT_NEAR(plant.displacement_mm(), 3 + (stopped - 3) / 2, 1e-9);
 }
 
-TEST(Plant, LineFaults) {
+TEST(Plant, ABlockedLineKeepsAndALeakReducesThePressure) {
   Plant plant(settings_of(twin()));
   settle(plant, 30, 2);
   plant.set_fault(LineFault{.kind = LineFault::Kind::blocked, .share = 0});
@@ -116,7 +116,7 @@ TEST(Plant, LineFaults) {
   EXPECT_NEAR(plant.pressure_kpa(), 30, 1e-6);
 }
 
-TEST(Plant, SensorFaults) {
+TEST(Plant, SensorFaultsChangeOnlyTheReading) {
   Plant plant(settings_of(twin()));
   settle(plant, 30, 2);
   const double before = plant.reading_mm();
@@ -133,7 +133,7 @@ TEST(Plant, SensorFaults) {
   EXPECT_EQ(plant.reading_mm(), plant.displacement_mm());
 }
 
-TEST(Plant, NoiseHasItsSizeAndComesFromItsSeed) {
+TEST(Plant, NoiseHasTheGivenRmsAndDependsOnTheSeed) {
   PlantSettings settings = settings_of(twin());
   settings.displacement_noise_mm = 0.03;
   settings.pressure_noise_kpa = 0.2;
@@ -159,7 +159,7 @@ TEST(Plant, NoiseHasItsSizeAndComesFromItsSeed) {
   EXPECT_EQ(differing, count);
 }
 
-TEST(Plant, WhatIsNoCommandIsIgnored) {
+TEST(Plant, IgnoresInvalidCommandsAndDurations) {
   Plant plant(settings_of(twin()));
   settle(plant, 20, 1);
   plant.command(std::nan(""));

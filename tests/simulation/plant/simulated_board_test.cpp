@@ -62,7 +62,7 @@ class Rig {
   std::array<Reading, 2> readings;
 };
 
-TEST(SimulatedBoard, AFingerFollowsTheTemperatureThatItMeasures) {
+TEST(SimulatedBoard, TheGainOfAFingerFollowsTheMeasuredTemperature) {
   SimulatedBoardSettings settings = two_twins();
   for (SimulatedChannel& channel : settings.channels) {
     const auto thermal = model::find_block("thermal_gain");
@@ -78,7 +78,7 @@ TEST(SimulatedBoard, AFingerFollowsTheTemperatureThatItMeasures) {
   EXPECT_NEAR(rig.readings[0].displacement_mm / rig.readings[1].displacement_mm, 1.1, 1e-9);
 }
 
-TEST(SimulatedBoard, ThermometersHaveTheirNoise) {
+TEST(SimulatedBoard, TemperatureReadingsHaveTheGivenNoise) {
   SimulatedBoardSettings settings = two_twins();
   settings.channels[0].measures_temperature = true;
   settings.channels[0].plant.temperature_noise_c = 0.2;
@@ -95,7 +95,7 @@ TEST(SimulatedBoard, ThermometersHaveTheirNoise) {
   EXPECT_NEAR(std::sqrt(squares), 0.2, 0.03);
 }
 
-TEST(SimulatedBoard, MovesWhatItIsToldAndReadsItBack) {
+TEST(SimulatedBoard, MovesTheCommandedFingerAndReadsTheCommandBack) {
   SimulatedBoardSettings settings = two_twins();
   settings.channels[0].measures_pressure = true;
   Rig rig(settings);
@@ -113,7 +113,7 @@ TEST(SimulatedBoard, MovesWhatItIsToldAndReadsItBack) {
 
 // In each exchange, the board first takes the readings and then applies the commands. Even a finger without
 // latency therefore shows its motion only in the next exchange.
-TEST(SimulatedBoard, AReadingDoesNotKnowTheCommandOfItsOwnExchange) {
+TEST(SimulatedBoard, AReadingPrecedesTheCommandOfTheSameExchange) {
   SimulatedBoardSettings settings = two_twins();
   for (SimulatedChannel& channel : settings.channels) {
     model::Model& model = channel.plant.model;
@@ -148,7 +148,7 @@ TEST(SimulatedBoard, TheSameSeedGivesTheSameBits) {
   }
 }
 
-TEST(SimulatedBoard, Quantises) {
+TEST(SimulatedBoard, QuantisesOutputsAndInputs) {
   SimulatedBoardSettings settings = two_twins();
   settings.channels[0].output_bits = 3;
   settings.channels[0].input_bits = 8;
@@ -159,7 +159,7 @@ TEST(SimulatedBoard, Quantises) {
   EXPECT_NEAR(steps, std::round(steps), 1e-9);
 }
 
-TEST(SimulatedBoard, AnObjectIsPulledOutAtItsTime) {
+TEST(SimulatedBoard, AnObjectIsRemovedAtTheScheduledTime) {
   SimulatedBoardSettings settings = two_twins();
   settings.channels[0].plant.object = PlantObject{.position_mm = 4, .yielding = 0.05};
   settings.events.push_back({.at_s = 3, .kind = Kind::object, .channel = 0});
@@ -173,7 +173,7 @@ TEST(SimulatedBoard, AnObjectIsPulledOutAtItsTime) {
 }
 
 // A simulated event must take effect at its scheduled time, even if no exchange happens at this time.
-TEST(SimulatedBoard, EventsHappenAtTheirOwnTimeNotAtTheNextExchange) {
+TEST(SimulatedBoard, EventsOccurAtTheScheduledTimeBetweenExchanges) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back(
       {.at_s = 1, .kind = Kind::line_fault, .line = {.kind = LineFault::Kind::leaking, .share = 0.5}});
@@ -189,7 +189,7 @@ TEST(SimulatedBoard, EventsHappenAtTheirOwnTimeNotAtTheNextExchange) {
   EXPECT_NEAR(often.readings[0].displacement_mm, seldom.readings[0].displacement_mm, 1e-6);
 }
 
-TEST(SimulatedBoard, SensorFaultsShowInTheReading) {
+TEST(SimulatedBoard, SensorFaultsMakeTheReadingOutOfRange) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back(
       {.at_s = 1, .kind = Kind::sensor_fault, .channel = 1, .sensor = {SensorFault::Kind::out_of_range, 0}});
@@ -205,7 +205,7 @@ TEST(SimulatedBoard, SensorFaultsShowInTheReading) {
   EXPECT_EQ(rig.readings[1].displacement_mm, last) << "the sensor repeats its last value";
 }
 
-TEST(SimulatedBoard, LostAndRestoredBus) {
+TEST(SimulatedBoard, ALostBusEndsTheSessionUntilRestored) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back({.at_s = 1, .kind = Kind::bus_lost, .status = BusStatus::timed_out});
   settings.events.push_back({.at_s = 2, .kind = Kind::bus_lost, .status = BusStatus::disconnected});
@@ -225,7 +225,7 @@ TEST(SimulatedBoard, LostAndRestoredBus) {
   EXPECT_EQ(rig.exchange(30, 30), BusStatus::ok);
 }
 
-TEST(SimulatedBoard, TheWatchdogVentsAtItsTimeAndHoldsUntilConnect) {
+TEST(SimulatedBoard, TheWatchdogVentsUntilANewConnection) {
   SimulatedBoardSettings settings = two_twins();
   settings.watchdog_timeout_s = 0.2;
   Rig rig(settings);
@@ -241,14 +241,14 @@ TEST(SimulatedBoard, TheWatchdogVentsAtItsTimeAndHoldsUntilConnect) {
   EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 10, 1e-6);
 }
 
-TEST(SimulatedBoard, AnExchangeInTimeKeepsTheWatchdogQuiet) {
+TEST(SimulatedBoard, ExchangesAtTheWatchdogTimeCauseNoTrip) {
   SimulatedBoardSettings settings = two_twins();
   settings.watchdog_timeout_s = 0.005;  // watchdog time-out [s], equal to the time between two exchanges
   Rig rig(settings);
   EXPECT_EQ(rig.run(1, 20, 20), BusStatus::ok);
 }
 
-TEST(SimulatedBoard, CommandsOutsideTheOutputsRange) {
+TEST(SimulatedBoard, ReportsAndLimitsCommandsOutsideTheRange) {
   Rig rig(two_twins());
   EXPECT_EQ(rig.exchange(100, 0), BusStatus::ok);
   EXPECT_EQ(rig.exchange(50, 101), BusStatus::write_refused);
@@ -259,7 +259,7 @@ TEST(SimulatedBoard, CommandsOutsideTheOutputsRange) {
   EXPECT_EQ(rig.board.plant(1).held_command_kpa(), 0) << "no output is written if a command is not a number";
 }
 
-TEST(SimulatedBoard, OutputsThatDoNotFollow) {
+TEST(SimulatedBoard, ReportsAnOutputThatDiffersFromTheCommand) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back({.at_s = 1, .kind = Kind::write_refused});
   settings.events.push_back({.at_s = 2, .kind = Kind::write_taken});

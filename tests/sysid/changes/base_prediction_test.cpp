@@ -16,7 +16,7 @@
 namespace softgrip::sysid::base_prediction_test {
 namespace {
 
-TEST(BasePrediction, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
+TEST(BasePrediction, HalfSampleDelayEqualsMeanOfAdjacentDriveSamples) {
   const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
   const Base base = fit_base(records, Judged::pressure, Drive::command, {});
   Extension late;
@@ -39,7 +39,7 @@ Base with_a_large_filter_part() {
   return base;
 }
 
-TEST(BasePrediction, ASensorShowsTheFiltersAsWell) {
+TEST(BasePrediction, SensorSaturationAndLagAlsoActOnTheFilterOutput) {
   const Base base = with_a_large_filter_part();
   const Record record = make_records(test::logs_of({}, 5), {}).front();
   const std::vector<double> plain = predict_base(base, record, {});

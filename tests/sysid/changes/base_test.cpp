@@ -35,7 +35,7 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
 /// A drift of the sensor zero does not depend on the command. A held-out block and the blocks next to it
 /// contain the same drift. The filter bank must not fit this drift in the neighbouring blocks, because it
 /// would then predict the drift in the held-out block.
-TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
+TEST(Base, LaterResidualMatchesHeldOutResidualDespiteSensorDrift) {
   const test::Finger drifting{.drift_mm = 0.1};
   const Base base = base_of(test::logs_of(drifting, 1));
   EXPECT_GT(base.left_mm, 0.06);
@@ -51,7 +51,7 @@ TEST(Base, IsFittedToLogsOfAFewSeconds) {
   EXPECT_LT(base.left_mm, 0.2);
 }
 
-TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
+TEST(Base, CommandDriveUsesShorterBinsThanMeasuredPressure) {
   std::vector<Log> logs = test::logs_of({}, 1, true);
   for (Log& log : logs) {
     for (double& t : log.time_s) t /= 4;  // changes the sample rate to 200 Hz
@@ -81,7 +81,7 @@ std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
   return logs;
 }
 
-TEST(Base, KnowsARegulatorThatItDoesNotSee) {
+TEST(Base, IncludesARegulatorModelWithoutMeasuredPressure) {
   const std::vector<Log> healthy = behind_a_narrow_port(test::logs_of({}, 1));
   const Base base = base_of(healthy);
   EXPECT_TRUE(base.regulator.has_value());

@@ -15,7 +15,7 @@ std::vector<Record> records() {
   return make_records(test::logs_of({}, 1), {});
 }
 
-TEST(Bins, AverageWhatIsThereAndLeaveHolesWhereNothingIs) {
+TEST(Bins, AverageFiniteSamplesAndAreNanWithoutSamples) {
   const Record record = records().front();  // the record is sampled at 50 Hz
   std::vector<double> series(record.size(), 1.0);
   series[0] = 3;
@@ -27,7 +27,7 @@ TEST(Bins, AverageWhatIsThereAndLeaveHolesWhereNothingIs) {
   EXPECT_EQ(bins[2], 1);
 }
 
-TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
+TEST(Bins, SeriesIsPaddedWithTheLastValueOrTruncated) {
   EXPECT_EQ(with_bins({1, 2}, 4), (std::vector<double>{1, 2, 2, 2}));
   EXPECT_EQ(with_bins({1, 2, 3}, 2), (std::vector<double>{1, 2}));
 }
@@ -50,7 +50,7 @@ Binned autoregression(double weight, double zero, unsigned seed) {
   return residual;
 }
 
-TEST(Bins, AnAutoregressionIsMadeWhite) {
+TEST(Bins, WhitenerRemovesTheCorrelationOfAnAutoregression) {
   const Binned residual = autoregression(0.9, 0, 3), peak_rate(2, std::vector<double>(4000, 0.0));
   const Whitener whitener = whitener_of(residual, peak_rate, 3);
   EXPECT_NEAR(whitener.before[0], 0.9, 0.05);
@@ -62,12 +62,12 @@ TEST(Bins, AnAutoregressionIsMadeWhite) {
   EXPECT_NEAR(white.head(n).dot(white.tail(n)) / static_cast<double>(n), 0, 0.05);
 }
 
-TEST(Bins, TheZeroOfARunDoesNotWidenTheSpread) {
+TEST(Bins, RunOffsetDoesNotIncreaseTheInnovationSpread) {
   const Binned peak_rate(2, std::vector<double>(4000, 0.0));
   EXPECT_NEAR(whitener_of(autoregression(0.5, 35, 5), peak_rate, 3).spread_at(0), innovation, 0.02);
 }
 
-TEST(Bins, WhatIsHastyHasASpreadOfItsOwn) {
+TEST(Bins, SpreadIsEstimatedSeparatelyForHighInputRates) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal(0, 1);
   Binned residual(1, std::vector<double>(8000)), peak_rate(1, std::vector<double>(8000));
@@ -80,7 +80,7 @@ TEST(Bins, WhatIsHastyHasASpreadOfItsOwn) {
   EXPECT_NEAR(whitener.spread_at(99), 10, 1);
 }
 
-TEST(Bins, ARowNeedsFiniteBinsBeforeIt) {
+TEST(Bins, RowsRequireFinitePrecedingBins) {
   Binned residual(1, std::vector<double>(20, 1.0));
   residual[0][10] = std::numeric_limits<double>::quiet_NaN();
   const Whitener whitener{{0.5, 0.1}, {}, {1}};

@@ -29,7 +29,7 @@ double width(const std::optional<Interval>& interval) {
 
 // Compares the width of the intervals with the scatter of the estimates. Each estimate comes from a different
 // input signal with different noise.
-TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
+TEST_F(ChangeIntervals, CoverTheTrueDelayAndMatchTheEstimateScatter) {
   constexpr double delay_s = 0.06;
   constexpr int draws = 30;
   double sum = 0, squares = 0, widths = 0;
@@ -53,7 +53,7 @@ TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   EXPECT_LT(widths, 2.5 * 2 * 1.96 * scatter);
 }
 
-TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
+TEST_F(ChangeIntervals, WidenByTheVariationBetweenHealthyRuns) {
   const LaterReadings later = readings({.delay_s = 0.06}, 5);
   const FittedEffect delay = fitted(later, "transport_delay");
   const auto unit = [&](double delay_s, double gain) {
@@ -75,7 +75,7 @@ TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
   EXPECT_DOUBLE_EQ(width(intervals_of(later, {delay}, {unit(0.04, -0.1)})[0].numbers.at(0)), alone);
 }
 
-TEST_F(ChangeIntervals, OfASizeAreThoseOfItsNumber) {
+TEST_F(ChangeIntervals, SizeIntervalEqualsTheParameterInterval) {
   const LaterReadings later = readings({.delay_s = 0.06}, 5);
   const EffectIntervals intervals = intervals_of(later, {fitted(later, "transport_delay")}, {}).front();
   ASSERT_TRUE(intervals.size && intervals.numbers.at(0));
@@ -83,7 +83,7 @@ TEST_F(ChangeIntervals, OfASizeAreThoseOfItsNumber) {
   EXPECT_NEAR(intervals.size->upper, intervals.numbers[0]->upper, 1e-6);
 }
 
-TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
+TEST_F(ChangeIntervals, WidenWithASimilarSecondEffect) {
   const LaterReadings later = readings({.delay_s = 0.06, .valve_lag_s = 0.05}, 5);
   const FittedEffect delay = fitted(later, "transport_delay");
   const FittedEffect lag = fitted(later, "valve_lag", {delay});
@@ -93,7 +93,7 @@ TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
   EXPECT_GT(width(together[1].numbers.at(0)), 0);
 }
 
-TEST_F(ChangeIntervals, OfANumberThatNothingShowsThereIsNone) {
+TEST_F(ChangeIntervals, AreAbsentForAParameterWithoutInfluence) {
   const LaterReadings later = readings({}, 5);
   FittedEffect stop = fitted(later, "pressure_saturation");
   stop.numbers.at(0) = stop.effect.numbers[0].upper;  // the pressure limit is far above the commanded

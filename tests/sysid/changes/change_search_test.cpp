@@ -12,7 +12,7 @@ namespace {
 
 class ChangeSearch : public test::PressureBase {};
 
-TEST_F(ChangeSearch, ADelayTakesMostOfWhatADelayLeaves) {
+TEST_F(ChangeSearch, DelayEffectRanksFirstForADelayedPressure) {
   const LaterReadings later = readings({.delay_s = 0.06});
   const std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   const std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {}, 1);
@@ -24,7 +24,7 @@ TEST_F(ChangeSearch, ADelayTakesMostOfWhatADelayLeaves) {
   EXPECT_TRUE(is_better(compare(paired_losses(later, later.white({}), ranked.front().fit.white), 0, 1)));
 }
 
-TEST_F(ChangeSearch, WhatACauseImprovesInHealthyUnitsCountsAgainstIt) {
+TEST_F(ChangeSearch, ErrorReductionInHealthyRunsLowersTheRank) {
   const LaterReadings later = readings({.delay_s = 0.06});
   const std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   NullGains gains;
@@ -34,7 +34,7 @@ TEST_F(ChangeSearch, WhatACauseImprovesInHealthyUnitsCountsAgainstIt) {
   EXPECT_EQ(ranked.back().fit.fitted.effect.id, "transport_delay");
 }
 
-TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
+TEST_F(ChangeSearch, SymmetricFillingLagIsAttributedToTheValve) {
   const LaterReadings later = readings({.valve_lag_s = 0.08});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "valve_lag" && e.id != "blocked_line"; });
@@ -48,7 +48,7 @@ TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "valve_lag");
 }
 
-TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
+TEST_F(ChangeSearch, TiedEffectWithFewestParametersRanksFirst) {
   const LaterReadings later = readings({.delay_s = 0.02});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "transport_delay"; });
@@ -89,7 +89,7 @@ bool never(const ScoredEffect&, const ScoredEffect&) {
   return false;
 }
 
-TEST(FewestNumbersFirst, WhatOnlySaysWhereItIsCountedFromCountsLast) {
+TEST(FewestNumbersFirst, NuisanceParameterCountsLessThanARealParameter) {
   std::vector<ScoredEffect> ranked{scored("two", 10.01, 2), scored("one_and_slack", 10, 2, 1)};
   put_fewest_numbers_first(ranked, always);
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "one_and_slack");
@@ -98,20 +98,20 @@ TEST(FewestNumbersFirst, WhatOnlySaysWhereItIsCountedFromCountsLast) {
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "one");
 }
 
-TEST(FewestNumbersFirst, OfEffectsThatAreToldApartTheBestStaysFirst) {
+TEST(FewestNumbersFirst, BestDistinguishableEffectStaysFirst) {
   std::vector<ScoredEffect> ranked{scored("two", 10, 2), scored("one", 9.9, 1)};
   put_fewest_numbers_first(ranked, never);
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "two");
 }
 
-TEST(FewestNumbersFirst, AnIdealGoesBehindWhatTiesWithIt) {
+TEST(FewestNumbersFirst, IdealEffectRanksBehindATiedEffect) {
   std::vector<ScoredEffect> ranked{scored("dead time", 10, 1), scored("lag", 9.8, 1)};
   ranked[0].fit.fitted.effect.is_ideal = true;
   put_fewest_numbers_first(ranked, always);
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "lag");
 }
 
-TEST_F(ChangeSearch, DeclaredTwinsAlwaysTie) {
+TEST_F(ChangeSearch, DeclaredIndistinguishableEffectsAlwaysTie) {
   const LaterReadings later = readings({.delay_s = 0.06});
   const std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {}, 1);
@@ -121,7 +121,7 @@ TEST_F(ChangeSearch, DeclaredTwinsAlwaysTie) {
   EXPECT_TRUE(ties(ranked.front(), ranked.back()));
 }
 
-TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {
+TEST_F(ChangeSearch, PlainRmsDecreasesOnlyForTheTrueDelay) {
   const LaterReadings later = readings({.delay_s = 0.06});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "transport_delay"; });
@@ -132,7 +132,7 @@ TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {
   EXPECT_NEAR(later.plain_rms({{effects[0], {0.0}}}), without, 1e-9);
 }
 
-TEST_F(ChangeSearch, AnotherZeroIsNothingThatIsLeft) {
+TEST_F(ChangeSearch, PlainRmsIgnoresAZeroOffset) {
   const LaterReadings later = readings({});
   Binned moved = later.left();
   for (double& v : moved[0]) v += 3;
@@ -140,7 +140,7 @@ TEST_F(ChangeSearch, AnotherZeroIsNothingThatIsLeft) {
   EXPECT_NEAR(other.plain_rms({}), later.plain_rms({}), 1e-9);
 }
 
-TEST_F(ChangeSearch, WhatIsAddedAtFullPressureIsItsMean) {
+TEST_F(ChangeSearch, AtFullPressureReturnsAConstantAdditionUnchanged) {
   const LaterReadings later = readings({});
   Binned added = later.left();
   for (auto& series : added) std::fill(series.begin(), series.end(), -0.7);

@@ -26,7 +26,7 @@ ChangeDiagnosis changed(const Finger& later, bool with_pressure = false) {
   return *diagnosis;
 }
 
-TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
+TEST(Change, DifferentInputAndZeroOffsetAreNoChange) {
   const ChangeDiagnosis d = changed({.zero_mm = 0.4});
   EXPECT_EQ(d.verdict, ChangeVerdict::unchanged) << change_sentence(d);
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
@@ -34,7 +34,7 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
 
 /// A payload changes the gain and the zero offset at the same time. If a change affects only the gain,
 /// payload must not be an alternative.
-TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
+TEST(Change, GainAndZeroChangeTogetherSuggestAPayload) {
   const auto may_be_a_weight = [](const Finger& later) {
     const ChangeDiagnosis d = changed(later);
     EXPECT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -61,7 +61,7 @@ ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
   return *diagnosis;
 }
 
-TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
+TEST(Change, RarelyUpdatedReadingIsNamedSampling) {
   const ChangeDiagnosis d = read_at([](std::size_t i) { return i - i % 10; });
   ASSERT_EQ(d.causes.size(), 1U) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "sampling");
@@ -81,7 +81,7 @@ std::vector<Log> humming(std::vector<Log> logs) {
   return logs;
 }
 
-TEST(Change, ASensorWithLittleNoiseAtTheEndOfItsRangeHasNoOutliers) {
+TEST(Change, SaturatedSensorWithLowNoiseHasNoOutliers) {
   std::vector<Log> later = humming(logs_of({}, 5));
   std::mt19937 random(5);
   std::normal_distribution<double> noise_mm(0, 0.001);
@@ -101,14 +101,14 @@ TEST(Change, ASensorWithLittleNoiseAtTheEndOfItsRangeHasNoOutliers) {
   for (const ChangeCause& cause : d->causes) EXPECT_NE(cause.id, "outliers") << change_sentence(*d);
 }
 
-TEST(Change, AReadingThatLeadsItsCommandIsAClockOffset) {
+TEST(Change, ReadingAheadOfTheCommandIsAClockOffset) {
   const ChangeDiagnosis d = read_at([](std::size_t i) { return i + 5; });
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "clock_offset") << change_sentence(d);
   EXPECT_NEAR(d.causes[0].size.value, 0.1, 0.02);
 }
 
-TEST(Change, AZeroIsFoundInLogsWhoseThinnedRecordsEndABinSooner) {
+TEST(Change, ZeroOffsetIsFoundIfThinnedRecordsAreOneBinShorter) {
   std::vector<Log> healthy = logs_of({}, 1), later = logs_of({.zero_mm = 0.4}, 5);
   for (std::vector<Log>* const logs : {&healthy, &later}) {
     for (Log& log : *logs) log = slice(log, 0, 1996);
@@ -119,7 +119,7 @@ TEST(Change, AZeroIsFoundInLogsWhoseThinnedRecordsEndABinSooner) {
   EXPECT_NEAR(d->readings.back().zero_mm, 0.4, 0.03);
 }
 
-TEST(Change, AnotherGainIsAgeingInPercent) {
+TEST(Change, GainChangeIsReportedAsAgeingInPercent) {
   const ChangeDiagnosis d = changed({.gain = 0.2 * 1.03});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "ageing");
@@ -159,7 +159,7 @@ TEST(Change, WithOneHealthyLogASmallGainDifferenceIsNoChange) {
   EXPECT_TRUE(is_changed(0.2 * 0.94));
 }
 
-TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
+TEST(Change, ThermalGainRefersToTheMeanHealthyTemperature) {
   const auto d = diagnose_change(logs_of({.with_temperature = true}, 1),
                                  logs_of({.per_c = 0.01, .with_temperature = true}, 5));
   ASSERT_TRUE(d) << d.error();
@@ -170,13 +170,13 @@ TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
 }
 
-TEST(Change, AZeroThatDriftedOnTheHealthyDayTooIsNoChange) {
+TEST(Change, ZeroDriftPresentInHealthyLogsIsNoChange) {
   const auto d = diagnose_change(logs_of({.drift_mm = 0.1}, 1), logs_of({.drift_mm = 0.1}, 5));
   ASSERT_TRUE(d) << d.error();
   EXPECT_EQ(d->verdict, ChangeVerdict::unchanged) << change_sentence(*d);
 }
 
-TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
+TEST(Change, StopIsSizedByTheShortfallAtFullPressure) {
   const ChangeDiagnosis d = changed({.stop_mm = 7});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   const ChangeCause& cause = d.causes[0];
@@ -198,7 +198,7 @@ TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   EXPECT_NEAR(cause.full_pressure_mm, -missing_mm / count, 0.2);
 }
 
-TEST(Change, AFingerThatBendsAboutAPointIsStiffeningOrItsTwin) {
+TEST(Change, StiffeningHasSensorNonlinearityAsAlternative) {
   const ChangeDiagnosis d = changed({.bend_per_mm = 0.02});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "stiffening");
@@ -209,7 +209,7 @@ TEST(Change, AFingerThatBendsAboutAPointIsStiffeningOrItsTwin) {
   EXPECT_EQ(d.verdict, ChangeVerdict::ambiguous);
 }
 
-TEST(Change, AFingerThatGivesWayMoreTheFartherItIsBentHasNotStiffened) {
+TEST(Change, SofteningWithDisplacementIsNamedSensorNonlinearity) {
   const ChangeDiagnosis d = changed({.bend_per_mm = -0.02});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "sensor_nonlinearity");
@@ -217,7 +217,7 @@ TEST(Change, AFingerThatGivesWayMoreTheFartherItIsBentHasNotStiffened) {
   EXPECT_LT(d.causes[0].fitted.numbers[0], 0);
 }
 
-TEST(Change, ALoopThatIsWiderOnOneSideIsAsymmetric) {
+TEST(Change, CrescentLoopIsNamedAsymmetricHysteresis) {
   const ChangeDiagnosis d = changed({.crescent_mm = 0.4});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "asymmetric_hysteresis");
@@ -225,7 +225,7 @@ TEST(Change, ALoopThatIsWiderOnOneSideIsAsymmetric) {
   EXPECT_NEAR(d.causes[0].fitted.numbers.at(1), 2, 0.3);
 }
 
-TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
+TEST(Change, SaturationJustBelowTheLargestReadingIsFound) {
   double largest_mm = 0;
   for (const Log& log : logs_of({}, 5))
     largest_mm =
@@ -241,7 +241,7 @@ TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
   EXPECT_GT(d.causes[0].intervals.numbers[0]->upper, end_mm);
 }
 
-TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
+TEST(Change, LeakIsFoundInThePressureRecordOnly) {
   const ChangeDiagnosis d = changed({.lost_kpa_per_s = 0.8}, true);
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "leak");
@@ -287,7 +287,7 @@ ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s)
   return *d;
 }
 
-TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
+TEST(Change, LeakCompensatedByARegulatorIsFound) {
   const ChangeDiagnosis d = changed_behind_a_regulator(40, 0.2);
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "leak");
@@ -300,7 +300,7 @@ TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
   EXPECT_LT(d.causes[0].size.value, 2 * 0.2 * 58);
 }
 
-TEST(Change, ATubeThatThrottlesMoreBehindARegulatorIsABlockedLine) {
+TEST(Change, NarrowerTubeBehindARegulatorIsABlockedLine) {
   const ChangeDiagnosis d = changed_behind_a_regulator(24, 0);
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "blocked_line");
@@ -330,7 +330,7 @@ ChangeDiagnosis changed_from_healthy(const Regulator& later) {
   return *d;
 }
 
-TEST(Change, ABlockedLineBehindARegulatorThatIsKnownIsSizedInPercent) {
+TEST(Change, BlockedLineBehindAKnownRegulatorIsSizedInPercent) {
   Regulator regulator = healthy_regulator;
   regulator.tube_per_s = 3;
   const ChangeDiagnosis d = changed_from_healthy(regulator);
@@ -340,7 +340,7 @@ TEST(Change, ABlockedLineBehindARegulatorThatIsKnownIsSizedInPercent) {
   EXPECT_NEAR(d.causes[0].size.value, 40, 8);
 }
 
-TEST(Change, ALeakBehindARegulatorThatIsKnownIsSizedByWhatItLosesWithTheLineShut) {
+TEST(Change, LeakBehindAKnownRegulatorIsSizedByPressureLoss) {
   Regulator regulator = healthy_regulator;
   regulator.leak_per_s = 0.05;
   const ChangeDiagnosis d = changed_from_healthy(regulator);
@@ -350,13 +350,13 @@ TEST(Change, ALeakBehindARegulatorThatIsKnownIsSizedByWhatItLosesWithTheLineShut
   EXPECT_NEAR(d.causes[0].size.value, 0.05 * leaking_kpa_per_s(58), 0.5);
 }
 
-TEST(Change, ARegulatorThatIsAsItWasIsUnchanged) {
+TEST(Change, UnchangedRegulatorIsReportedUnchanged) {
   const ChangeDiagnosis d = changed_behind_a_regulator(40, 0);
   EXPECT_EQ(d.verdict, ChangeVerdict::unchanged) << change_sentence(d);
   EXPECT_EQ(d.readings.front().base, "a regulator");
 }
 
-TEST(Change, ALaterStartOfThePressureIsADelayInSeconds) {
+TEST(Change, DelayedPressureIsATransportDelayInSeconds) {
   const ChangeDiagnosis d = changed({.delay_s = 0.1});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "transport_delay");
@@ -383,7 +383,7 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
       << "structure_left is the deprecated name of unexplained";
 }
 
-TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
+TEST(Change, PageShowsNextStepsAndTheModelError) {
   const ChangeDiagnosis d = changed({.gain = 0.19});
   const Page page = change_page(d, logs_of({}, 1), logs_of({}, 5), {});
   const std::string html = page.to_html();
@@ -397,7 +397,7 @@ TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
   EXPECT_EQ(runs.series.size(), 2U);
 }
 
-TEST(Change, TooLittleIsRefused) {
+TEST(Change, TooShortOrMissingHealthyLogsAreRejected) {
   std::vector<Log> short_logs = logs_of({}, 1);
   short_logs.resize(1);
   short_logs[0] = slice(short_logs[0], 0, 100);
@@ -408,7 +408,7 @@ TEST(Change, TooLittleIsRefused) {
 /// Because of a lag of 0.01 s, the error is larger than in the healthy runs, but smaller than the limit for a
 /// further run. If the later run starts like the healthy runs, the diagnosis finds the lag. If the later run
 /// starts under pressure, the diagnosis does not find the lag.
-TEST(Change, AnotherStartNeedsALargerError) {
+TEST(Change, DifferentStartStateNeedsALargerError) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);
   const std::vector<double>& command = at_rest.pressure_command_kpa;

@@ -23,7 +23,7 @@ class ChangeCommand : public CommandInFolder {
   }
 };
 
-TEST_F(ChangeCommand, ABaselineIsKeptAndAWeakerFingerCaught) {
+TEST_F(ChangeCommand, DiagnoseFindsAgeingAgainstASavedBaseline) {
   ASSERT_EQ(run("baseline --data h1.csv h2.csv --model " + model + " --out base"), 0) << read("err.txt");
   EXPECT_EQ(read("base/healthy_2.csv"), read("h2.csv"));
   EXPECT_TRUE(Json::parse(read("base/baseline.json"))["check"].is_null());
@@ -38,12 +38,12 @@ TEST_F(ChangeCommand, ABaselineIsKeptAndAWeakerFingerCaught) {
   EXPECT_EQ(json["made_of"]["healthy"].size(), 2U);
 }
 
-TEST_F(ChangeCommand, ASecondRunThatDiffersIsNotAcceptable) {
+TEST_F(ChangeCommand, BaselineWithADifferentSecondRunExitsWith6) {
   EXPECT_EQ(run("baseline --data h1.csv h2.csv --check later1.csv --model " + model + " --out base"), 6);
   EXPECT_NE(Json::parse(read("base/baseline.json"))["check"]["verdict"], "unchanged");
 }
 
-TEST_F(ChangeCommand, ABaselineThatIsThereIsLookedAtAgain) {
+TEST_F(ChangeCommand, CheckRepeatsTheResultOfASavedBaseline) {
   write("gauge.csv", "gauge_mm,displacement_mm\n0,0\n5,5\n10,10\n");
   write("again.csv", format_log(test::log_of({}, 3)));
   ASSERT_EQ(run("baseline --data h1.csv h2.csv --check again.csv --gauge gauge.csv --model " + model +
@@ -63,7 +63,7 @@ TEST_F(ChangeCommand, ABaselineThatIsThereIsLookedAtAgain) {
   EXPECT_EQ(run("baseline --check once"), 3) << "the baseline has no second run";
 }
 
-TEST_F(ChangeCommand, ABaselineThatSomebodyChangedIsRefused) {
+TEST_F(ChangeCommand, ModifiedOrMissingBaselineIsRejected) {
   ASSERT_EQ(run("baseline --data h1.csv --model " + model + " --out base"), 0);
   write("base/healthy_1.csv", read("h2.csv"));
   EXPECT_EQ(run("diagnose --baseline base --data later1.csv --out out"), 3);

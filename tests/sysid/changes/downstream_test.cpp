@@ -46,7 +46,7 @@ std::vector<double> walked(const model::Model& model, const Record& record) {
   return predict(model, record, rest_starts(model, {record}).front());
 }
 
-TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
+TEST(Downstream, EqualsTheFullSimulationOfDownstreamChains) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);
   const std::vector<std::vector<const char*>> chains{
@@ -72,7 +72,7 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
 
 // is_downstream() returns true if a block can be applied to the samples of a prediction, so that the model is
 // not simulated again. For such a block, the result must equal the simulation of the model with the block.
-TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
+TEST(Downstream, EqualsTheFullSimulationForEveryDownstreamBlock) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);
   std::size_t count = 0;
@@ -86,7 +86,7 @@ TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   EXPECT_GE(count, 10U);
 }
 
-TEST(Downstream, IsNothingThatLooksAtTheWayOrStandsInFront) {
+TEST(Downstream, RejectsDynamicRandomAndUpstreamBlocks) {
   const Record record = waving();
   for (const char* id : {"backlash", "inertia", "sensor_lag", "wear", "slow_creep", "stress_softening",
                          "valve_deadband", "sensor_noise", "outliers"})
@@ -95,7 +95,7 @@ TEST(Downstream, IsNothingThatLooksAtTheWayOrStandsInFront) {
   EXPECT_FALSE(is_downstream({block("contact")}, {}, record));
 }
 
-TEST(Downstream, IsNotOfAHeldCommandNorOfAnUnknownStart) {
+TEST(Downstream, RejectsHeldCommandsAndUnknownStarts) {
   Record held = waving(), unknown = waving();
   held.held = true;
   unknown.start_unknown = true;

@@ -39,17 +39,17 @@ bool is_unused(const ChangeDiagnosis& d) {
   });
 }
 
-TEST(DriveChoice, ThePressureOfTheFingerDrivesIt) {
+TEST(DriveChoice, UsesTheMeasuredPressureOfTheFinger) {
   EXPECT_EQ(choice_of(logs_of({.valve_lag_s = 0.3}, 1, true)).drive, Drive::measured);
 }
 
-TEST(DriveChoice, TheCommandDrivesWhatTheGaugeDoesNotShow) {
+TEST(DriveChoice, UsesTheCommandIfTheGaugeMissesTheFingerPressure) {
   const DriveChoice choice = choice_of(with_gauge_in_the_pipe(logs_of({}, 1)));
   EXPECT_LT(choice.by_command_mm, 0.5 * choice.by_pressure_mm);
   EXPECT_EQ(choice.drive, Drive::command);
 }
 
-TEST(DriveChoice, AChangeIsFoundAlthoughTheGaugeDoesNotShowWhatMovesTheFinger) {
+TEST(DriveChoice, GainChangeIsFoundWithAnUnusedPressureGauge) {
   const auto healthy = with_gauge_in_the_pipe(logs_of({}, 1));
   const auto d = diagnose_change(healthy, with_gauge_in_the_pipe(logs_of({.gain = 0.2 * 1.05}, 5)));
   ASSERT_TRUE(d) << d.error();

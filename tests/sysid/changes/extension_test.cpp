@@ -23,7 +23,7 @@ TEST(Extension, ADelayShiftsTheDrive) {
   EXPECT_EQ(drive_behind({}, r), r.drive_kpa);
 }
 
-TEST(Extension, WhatIsInFrontOfAModelJoinsWhatItHasOfItsKind) {
+TEST(Extension, ValveBlocksMergeWithModelBlocksOfTheSameType) {
   const model::BlockSpec delay{model::block_type<model::TransportDelay>(), {0.2}};
   const model::BlockSpec lag{model::block_type<model::ValveLag>(), {0.03}};
   const model::BlockSpec no_lag{lag.type, {0.0}};
@@ -37,7 +37,7 @@ TEST(Extension, WhatIsInFrontOfAModelJoinsWhatItHasOfItsKind) {
   EXPECT_FALSE(with_valve(model::with_block(none, lag), {lag}));
 }
 
-TEST(Extension, ALeakLosesPressureWhileTheValveRestsAndIsMadeUpForByMotion) {
+TEST(Extension, LeakLowersTheHeldPressureUntilTheCommandMoves) {
   Record r = record();
   r.largest_kpa = 40;
   r.drive_kpa.assign(r.size(), 40.0);
@@ -48,7 +48,7 @@ TEST(Extension, ALeakLosesPressureWhileTheValveRestsAndIsMadeUpForByMotion) {
   EXPECT_EQ(pressure_behind({}, {}, r, r.drive_kpa), r.drive_kpa);
 }
 
-TEST(Extension, SofteningIsAsBeforeAtTheLargestPressureAndSofterBelowIt) {
+TEST(Extension, SofteningStartsBelowThePreviousLargestPressure) {
   Record r = record();
   r.drive_kpa.assign(r.size(), 20.0);
   r.drive_kpa[10] = 60;
@@ -58,7 +58,7 @@ TEST(Extension, SofteningIsAsBeforeAtTheLargestPressureAndSofterBelowIt) {
   EXPECT_NEAR(factor[20], 1.1, 1e-6);
 }
 
-TEST(Extension, ACrescentGoesUpOneWayAndDownAnother) {
+TEST(Extension, CrescentLowersLoadingAndRaisesUnloading) {
   Record r = record();
   const auto samples = static_cast<double>(r.size());
   for (std::size_t i = 0; i < r.size(); ++i)  // the pressure rises to 60 kPa and falls to 0
@@ -83,7 +83,7 @@ TEST(Extension, ABlockedLineFillsMoreSlowlyThanItEmpties) {
                                                                // time constant of venting
 }
 
-TEST(FilterBank, ALagIsExactForWhatIsStraightBetweenSamples) {
+TEST(FilterBank, LagIsExactForLinearInputBetweenSamples) {
   Record r = record();
   std::vector<double> ramp(r.size());
   for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = 2 * r.time_s[i];
@@ -92,7 +92,7 @@ TEST(FilterBank, ALagIsExactForWhatIsStraightBetweenSamples) {
     EXPECT_NEAR(lag[i], 2 * (r.time_s[i] - 0.5 * (1 - std::exp(-r.time_s[i] / 0.5))), 1e-9);
 }
 
-TEST(FilterBank, ColumnsKnowTheSupplyWhereItIsRecorded) {
+TEST(FilterBank, ColumnsDependOnTheRecordedSupplyPressure) {
   Record r = record();
   const Eigen::MatrixXd plain = filter_columns(r, r.drive_kpa, FilterKind::valve, 60);
   EXPECT_EQ(plain.rows(), static_cast<Eigen::Index>(r.size()));
@@ -104,7 +104,7 @@ TEST(FilterBank, ColumnsKnowTheSupplyWhereItIsRecorded) {
   EXPECT_NE(supplied, plain);
 }
 
-TEST(FilterBank, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
+TEST(FilterBank, CommandBankCombinesValveAndFingerColumns) {
   const Record r = record();
   const auto columns = [&](FilterKind kind) { return filter_columns(r, r.drive_kpa, kind, 60).cols(); };
   // Columns without a delay exist only in the filter bank for a valve. It has 9 time constants, one of which
@@ -114,7 +114,7 @@ TEST(FilterBank, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
             columns(FilterKind::valve) - at_once + columns(FilterKind::finger));
 }
 
-TEST(FilterBank, WeightedIsItsColumnsTimesTheWeights) {
+TEST(FilterBank, WeightedFiltersEqualColumnsTimesWeights) {
   const Record r = record();
   for (const FilterKind kind : {FilterKind::valve, FilterKind::finger, FilterKind::valve_and_finger}) {
     const Eigen::MatrixXd columns = filter_columns(r, r.drive_kpa, kind, 60);
@@ -123,7 +123,7 @@ TEST(FilterBank, WeightedIsItsColumnsTimesTheWeights) {
   }
 }
 
-TEST(Extension, SoftenedSinceTheLargestPressureIsSofterAtIt) {
+TEST(Extension, SofteningWithZeroRangeActsAtTheLargestPressure) {
   Record r = record();
   for (std::size_t i = 0; i < r.size(); ++i) r.drive_kpa[i] = i < 10 ? 30 : 10;
   const std::vector<double> factor = softened({0.2, 0}, r, 60);

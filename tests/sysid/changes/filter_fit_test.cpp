@@ -48,7 +48,7 @@ std::vector<FittedFilters> fitted(const std::vector<Binned>& models, std::size_t
   return fit_filters(records, units, kind, bin_s, 22, left, 1);
 }
 
-TEST(FilterFit, ExplainsWhatFollowsTheDrive) {
+TEST(FilterFit, ExplainsAResidualThatFollowsTheDrive) {
   const FittedFilters filters = fitted({left_of(waving(), 0.1)})[0];
   EXPECT_GT(filters.weights.size(), 0);
   EXPECT_LT(filters.left_mm, 0.02);
@@ -62,7 +62,7 @@ TEST(FilterFit, OneRunShowsNoFilterBankOfAFinger) {
   EXPECT_GT(fitted(residual, 2)[0].weights.size(), 0);
 }
 
-TEST(FilterFit, OfWhatDoesNotFollowTheDriveIsNone) {
+TEST(FilterFit, ResidualIndependentOfTheDriveGetsNoFilters) {
   const FittedFilters filters = fitted({left_of(waving(), 0)}, 1, FilterKind::valve)[0];
   EXPECT_EQ(filters.weights.size(), 0);
   const Binned model = left_of(waving(), 0);
@@ -77,7 +77,7 @@ TEST(FilterFit, OfWhatDoesNotFollowTheDriveIsNone) {
 
 /// The error of a left-out cross-validation unit must be computed from the residual of the model that was
 /// fitted without this unit.
-TEST(FilterFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
+TEST(FilterFit, EachUnitIsScoredByAModelFittedWithoutThatUnit) {
   const std::vector<Record> records{waving()};
   const Units units(records);
   const Binned whole = left_of(waving(), 0);
@@ -97,7 +97,7 @@ TEST(FilterFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
   EXPECT_GT(judged, whole[0].size() / 2);
 }
 
-TEST(FilterFit, OfSeveralModelsIsThatOfEach) {
+TEST(FilterFit, JointFitEqualsTheSeparateFitOfEachModel) {
   const std::vector<Binned> left{left_of(waving(), 0.1), left_of(waving(), -0.2), left_of(waving(), 0.3)};
   const std::vector<FittedFilters> together = fitted(left);
   ASSERT_EQ(together.size(), 3U);
@@ -108,7 +108,7 @@ TEST(FilterFit, OfSeveralModelsIsThatOfEach) {
   }
 }
 
-TEST(FilterFit, AModelThatIsNotFiniteIsNoChoice) {
+TEST(FilterFit, NonFiniteResidualGivesAnInfiniteError) {
   std::vector<Binned> left{left_of(waving(), 0.1), left_of(waving(), 0.1)};
   left[1][0][40] = std::numeric_limits<double>::quiet_NaN();
   const std::vector<FittedFilters> fits = fitted(left);

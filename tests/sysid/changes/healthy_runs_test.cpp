@@ -32,7 +32,7 @@ TEST_F(HealthyRuns, AreWithinTheirOwnSpread) {
   }
 }
 
-TEST_F(HealthyRuns, ADelayIsBeyondTheirSpread) {
+TEST_F(HealthyRuns, DelayExceedsTheSpreadOfHealthyRuns) {
   const RunSpread spread(units(), base_.units.runs());
   const LaterReadings later = readings({.delay_s = 0.06});
   EXPECT_TRUE(spread.is_exceeded(later.plain_rms({}), per_bin(later, later.white({}))));

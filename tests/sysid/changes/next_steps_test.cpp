@@ -11,7 +11,7 @@
 namespace softgrip::sysid::next_steps_test {
 namespace {
 
-TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
+TEST(NextSteps, EveryCauseHasTwoNextStepsAndADescription) {
   std::vector<std::string_view> ids;
   for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
@@ -30,7 +30,7 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   EXPECT_TRUE(plain_words("no_cause").empty());
 }
 
-TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
+TEST(NextSteps, SizeParameterExistsInABlockOfTheCause) {
   std::size_t numbers = 0;
   for (const Cause& cause : all_causes()) {
     const SizedBy size = sized_by(cause.id);

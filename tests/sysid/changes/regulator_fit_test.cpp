@@ -12,7 +12,7 @@ namespace {
 using test::record_of;
 using test::rms;
 
-TEST(RegulatorFit, IsFoundFromItsPressure) {
+TEST(RegulatorFit, RecoversARegulatorFromMeasuredPressure) {
   const Regulator truth{.play_kpa = 0.2,
                         .dead_kpa = 0.9,
                         .full_kpa = 15,
@@ -29,7 +29,7 @@ TEST(RegulatorFit, IsFoundFromItsPressure) {
   EXPECT_NEAR(found.integral_per_s, truth.integral_per_s, 0.3);
 }
 
-TEST(RegulatorFit, IsFoundFromWhatAFingerBehindItDoes) {
+TEST(RegulatorFit, RecoversThePressureFromFingerDisplacement) {
   const Regulator truth{.play_kpa = 0.3,
                         .dead_kpa = 0.9,
                         .full_kpa = 20,

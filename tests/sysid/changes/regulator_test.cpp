@@ -22,7 +22,7 @@ Record step_record() {
   return record_of(command, 0.01);
 }
 
-TEST(Regulator, ItsIntegralTakesAwayWhatItsOverlapLeaves) {
+TEST(Regulator, IntegralTermRemovesTheErrorOfTheOverlap) {
   const Record record = step_record();
   Regulator overlapping{.play_kpa = 0.1, .dead_kpa = 3, .integral_per_s = 2};
   const std::vector<double> p = regulated(overlapping, record, record.drive_kpa);
@@ -32,7 +32,7 @@ TEST(Regulator, ItsIntegralTakesAwayWhatItsOverlapLeaves) {
   EXPECT_NEAR(regulated(overlapping, record, record.drive_kpa).back(), 47, 0.3);
 }
 
-TEST(Regulator, APortThatIsOpenFillsByWhatStandsBeforeIt) {
+TEST(Regulator, ChokedFillingRateIsProportionalToSupplyPressure) {
   Record record = step_record();
   const Regulator narrow{.port_per_s = 0.3, .tube_per_s = 30, .spool_lag_s = 0, .chamber_share = 0};
   record.supply_kpa.assign(record.size(), 500.0);
@@ -44,7 +44,7 @@ TEST(Regulator, APortThatIsOpenFillsByWhatStandsBeforeIt) {
   EXPECT_NEAR(regulated(narrow, record, record.drive_kpa)[60], 401.3 / 601.3 * p[60], 0.5);
 }
 
-TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
+TEST(Regulator, LeakVentsTheFingerWhilePortsAreShut) {
   const Record record = record_of(std::vector<double>(200, 50.0), 0.01);
   Regulator shut{.dead_kpa = 1000, .chamber_share = 0, .leak_per_s = 0.02};
   const std::vector<double> p = regulated(shut, record, record.drive_kpa);
@@ -71,7 +71,7 @@ TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
   }
 }
 
-TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
+TEST(Regulator, CompensatesALeakAtRestButRisesMoreSlowly) {
   const Record record = step_record();
   Regulator regulator{.play_kpa = 0, .dead_kpa = 1, .integral_per_s = 4};
   const std::vector<double> tight = regulated(regulator, record, record.drive_kpa);
@@ -82,7 +82,7 @@ TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   EXPECT_LT(leaking[70], tight[70] - 0.2);
 }
 
-TEST(Regulator, ASpoolThatLagsOvershoots) {
+TEST(Regulator, SpoolLagCausesOvershoot) {
   const Record record = step_record();
   const auto most = [&](double spool_lag_s) {
     const Regulator regulator{
@@ -104,7 +104,7 @@ TEST(Regulator, DoesNotChatterBetweenALargeChamberAndATubeOfAnyWidth) {
   }
 }
 
-TEST(Regulator, AChamberBeforeTheTubeIsFilledFirst) {
+TEST(Regulator, ChamberVolumeSlowsThePressureRise) {
   const Record record = step_record();
   const auto soon = [&](double chamber_share) {
     const Regulator regulator{.port_per_s = 0.3, .tube_per_s = 30, .chamber_share = chamber_share};
@@ -131,7 +131,7 @@ std::vector<double> textbook_pressure(const textbook::ValveNumbers& numbers, con
   return p;
 }
 
-TEST(Regulator, AnswersAsAnotherProgramsValveByTheSameStandard) {
+TEST(Regulator, MatchesAnIndependentIso6358Simulation) {
   textbook::ValveNumbers numbers;
   const double per_finger = textbook::reference_kpa / numbers.finger_volume_dm3;
   for (const double leak : {0.0, 1e-4}) {

@@ -21,13 +21,13 @@ PairedLosses losses(double mean, double spread, std::size_t blocks, unsigned see
   return paired;
 }
 
-TEST(Comparison, AClearDifferenceWinsAndNoneDoesNot) {
+TEST(Comparison, OnlyAClearLossReductionIsBetter) {
   EXPECT_TRUE(is_better(compare(losses(1, 0.1, 20, 1), 0, 1)));
   EXPECT_FALSE(is_better(compare(losses(0, 1, 20, 1), 0, 1)));
   EXPECT_FALSE(is_better(compare(losses(-1, 0.1, 20, 1), 0, 1)));
 }
 
-TEST(Comparison, AnEqualLossIsNoWin) {
+TEST(Comparison, EqualLossesGiveAShareOfZero) {
   EXPECT_DOUBLE_EQ(compare(losses(0, 0, 20, 1), 0, 1).share, 0);
 }
 
@@ -36,7 +36,7 @@ TEST(Comparison, TheDifferenceMustExceedTheTolerance) {
   EXPECT_FALSE(is_better(compare(losses(1, 0.1, 20, 1), 1.2, 1)));
 }
 
-TEST(Comparison, TheIntervalContainsTheMeanDifferenceAsOftenAsItSays) {
+TEST(Comparison, IntervalCoversTheMeanIn95PercentOfSets) {
   int contained = 0;
   constexpr int sets = 400;
   for (unsigned seed = 1; seed <= sets; ++seed) {
@@ -46,7 +46,7 @@ TEST(Comparison, TheIntervalContainsTheMeanDifferenceAsOftenAsItSays) {
   EXPECT_NEAR(contained / static_cast<double>(sets), 0.95, 0.035);
 }
 
-TEST(Comparison, ABlockCountsByItsRows) {
+TEST(Comparison, BlocksAreWeightedByNumberOfRows) {
   PairedLosses paired{{0, 100}, {1, 0}, {1000, 10}};
   EXPECT_LT(compare(paired, 0, 1).lower, 0.2);
 }

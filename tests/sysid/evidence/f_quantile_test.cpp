@@ -15,7 +15,7 @@ TEST(FQuantile, AgreesWithTheTablesOfAbramowitzAndStegun) {
   EXPECT_NEAR(f_quantile(0.99, 5, 10), 5.64, 0.005);
 }
 
-TEST(FQuantile, OfTheReciprocalRatioIsTheReciprocal) {
+TEST(FQuantile, SwappedDegreesOfFreedomGiveTheReciprocal) {
   for (const double p : {0.05, 0.3, 0.5, 0.9, 0.99})
     EXPECT_NEAR(f_quantile(p, 3, 7) * f_quantile(1 - p, 7, 3), 1, 1e-9) << p;
 }

@@ -50,7 +50,7 @@ Signals planned(double lag_share, unsigned seed) {
   return signals;
 }
 
-TEST(LoopPhase, AValveThatSticksMakesAnOddCorrelation) {
+TEST(LoopPhase, StictionGivesAnOddCrossCorrelation) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Signals s = loop(0.3, 0, 0.05, 0.03, seed);
     EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
@@ -59,7 +59,7 @@ TEST(LoopPhase, AValveThatSticksMakesAnOddCorrelation) {
   }
 }
 
-TEST(LoopPhase, ADisturbanceMakesAnEvenOne) {
+TEST(LoopPhase, DisturbanceGivesAnEvenCrossCorrelation) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Signals s = loop(0, 1, 0.4, 0.01, seed);
     EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
@@ -68,7 +68,7 @@ TEST(LoopPhase, ADisturbanceMakesAnEvenOne) {
   }
 }
 
-TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
+TEST(LoopPhase, PlannedCommandIsNoClosedLoopAtAnyLag) {
   for (const double lag_share : {1.0, 0.2, 0.01}) {
     const Signals s = planned(lag_share, 3);
     EXPECT_FALSE(is_closed_loop(s.command, s.reading)) << lag_share;
@@ -79,7 +79,7 @@ TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
 /// The command is random, and the reading follows it with a lag. The cross-correlation is therefore
 /// one-sided, and its odd part is as large as for a valve with stiction. Nevertheless, the signals must not
 /// count as a closed loop.
-TEST(LoopPhase, ARandomCommandIsNoLoop) {
+TEST(LoopPhase, RandomCommandIsNoClosedLoop) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);
   Signals s;
@@ -93,7 +93,7 @@ TEST(LoopPhase, ARandomCommandIsNoLoop) {
   EXPECT_FALSE(shows_stiction(s.command, s.reading));
 }
 
-TEST(LoopPhase, NeitherGapsNorAConstantAreALoop) {
+TEST(LoopPhase, StictionIsShownDespiteGapsButNotByAConstant) {
   Signals s = loop(0.3, 0, 0.05, 0.03, 1);
   for (std::size_t i = 0; i < s.reading.size(); i += 7)
     s.reading[i] = std::numeric_limits<double>::quiet_NaN();

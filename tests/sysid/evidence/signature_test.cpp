@@ -13,7 +13,7 @@ std::vector<OperatingPoint> grip() {
   return {{0, 0, 0}, {1, 0, 0}, {20, 30, 4}, {40, 30, 8}, {50, 0, 10}, {50, 0, 10}, {20, 30, 5}, {0, 0, 1}};
 }
 
-TEST(Signature, EachConditionHoldsWhereItSays) {
+TEST(Signature, ConditionsSelectTheirPhasesOfAGrip) {
   EXPECT_EQ(required_at(Appears::at_rest, grip()),
             (std::vector<bool>{true, true, false, false, false, false, false, true}));
   EXPECT_EQ(required_at(Appears::held, grip()),
@@ -32,13 +32,13 @@ TEST(Signature, TheScaleAndTheOffsetOfThePressureDoNotMatter) {
     EXPECT_EQ(required_at(appears, other), required_at(appears, grip()));
 }
 
-TEST(Signature, ARunWithoutARestHasNone) {
+TEST(Signature, RunWithoutRestHasNoSampleAtRest) {
   const std::vector<OperatingPoint> sine{{0, 30, 0}, {30, 30, 5}, {60, 30, 10}, {30, 30, 5}, {0, 30, 0}};
   const std::vector<bool> at_rest = required_at(Appears::at_rest, sine);
   EXPECT_EQ(std::count(at_rest.begin(), at_rest.end(), true), 0);
 }
 
-TEST(Signature, EveryConditionHasARecordingThatMeetsIt) {
+TEST(Signature, EveryConditionHasARecordingInstruction) {
   for (const Appears appears :
        {Appears::anywhere, Appears::at_rest, Appears::held, Appears::moving, Appears::displaced})
     EXPECT_EQ(recording_for(appears).substr(0, 7), "record ");
@@ -51,7 +51,7 @@ TEST(Signature, EveryConditionHasARecordingThatMeetsIt) {
   EXPECT_TRUE(contains(Appears::displaced, "highest pressure"));
 }
 
-TEST(Rates, AreHeldAtTheirPeakForAMoment) {
+TEST(Rates, DecayFromThePeakWithATimeConstantOfHalfASecond) {
   Record record;
   record.time_s = {0, 1, 2, 2.5};
   record.duration_s = {0, 1, 1, 0.5};

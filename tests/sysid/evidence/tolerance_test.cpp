@@ -12,7 +12,7 @@
 namespace softgrip::sysid::tolerance_test {
 namespace {
 
-TEST(Tolerance, OfOneRunIsThreeTimesInRootMeanSquareAndFallsWithMoreRuns) {
+TEST(Tolerance, FactorDecreasesWithTheNumberOfRuns) {
   EXPECT_NEAR(run_to_run_factor(1), 9.28, 0.01);
   double before = run_to_run_factor(1);
   for (std::size_t runs = 2; runs <= 20; ++runs) {
@@ -22,7 +22,7 @@ TEST(Tolerance, OfOneRunIsThreeTimesInRootMeanSquareAndFallsWithMoreRuns) {
   EXPECT_GT(before, 1);
 }
 
-TEST(Tolerance, AnotherRunOfTheSameKindExceedsItInOneOfTwenty) {
+TEST(Tolerance, IsExceededByFivePercentOfSimilarRuns) {
   // Simulates 4,000 sets of runs with seed 1. A run is a point with three coordinates. All coordinates have
   // the same standard deviation.
   std::mt19937 random(1);

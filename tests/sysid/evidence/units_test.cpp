@@ -22,7 +22,7 @@ Record record_of(std::size_t samples, double first_s = 0) {
   return record;
 }
 
-TEST(Units, OfSeveralRunsAreTheRuns) {
+TEST(Units, EachOfSeveralRunsIsOneUnit) {
   const std::vector<Record> records{record_of(10), record_of(20), record_of(30)};
   const Units units(records);
   EXPECT_TRUE(units.are_runs());
@@ -40,7 +40,7 @@ TEST(Units, OfSeveralRunsAreTheRuns) {
   }
 }
 
-TEST(Units, OfOneRunAreItsHalves) {
+TEST(Units, OneRunIsDividedIntoTwoHalves) {
   const std::vector<Record> records{record_of(11, 5)};
   const Units units(records);
   EXPECT_FALSE(units.are_runs());
@@ -63,13 +63,13 @@ TEST(Units, OfOneRunAreItsHalves) {
   EXPECT_EQ(readings, 11U);
 }
 
-TEST(Units, WithoutNoneAreAllRecords) {
+TEST(Units, LeavingOutNoUnitKeepsAllRecords) {
   const std::vector<Record> one{record_of(11)}, two{record_of(4), record_of(4)};
   EXPECT_EQ(Units(one).without(one, Units(one).count()).at(0).readings, 11U);
   EXPECT_EQ(Units(two).without(two, Units(two).count()).size(), 2U);
 }
 
-TEST(Units, OfManyRunsAreLeftOutTogetherAndEachOnce) {
+TEST(Units, ManyRunsAreGroupedAndEachIsLeftOutOnce) {
   const std::vector<Record> records(14, record_of(3));
   const Units units(records);
   EXPECT_EQ(units.count(), limits::most_units);
@@ -79,7 +79,7 @@ TEST(Units, OfManyRunsAreLeftOutTogetherAndEachOnce) {
   EXPECT_EQ(left_out, records.size());
 }
 
-TEST(Units, AreHeldOutAsAWholeInBlocks) {
+TEST(Units, EachFoldHoldsOutOneWholeUnit) {
   for (const std::size_t runs : {1U, 3U, 8U}) {
     std::vector<Record> records;
     for (std::size_t r = 0; r < runs; ++r) records.push_back(record_of(41 + r, 100));

@@ -12,12 +12,12 @@ Claim sound() {
   return {.size = Interval{1, 2}, .largest_size = 10, .error_without = 1, .error_with = 0.5};
 }
 
-TEST(Veto, ASoundClaimStands) {
+TEST(Veto, ClaimThatMeetsAllConditionsIsAccepted) {
   EXPECT_EQ(veto_of(sound()), Veto::none);
   EXPECT_TRUE(reason_of(Veto::none).empty());
 }
 
-TEST(Veto, EachConditionRejects) {
+TEST(Veto, EachUnmetConditionRejectsTheClaim) {
   Claim claim = sound();
   claim.size = Interval{-0.02, 0.10};
   EXPECT_EQ(veto_of(claim), Veto::size_uncertain);
@@ -42,13 +42,13 @@ TEST(Veto, EachConditionRejects) {
   EXPECT_EQ(veto_of(claim), Veto::absent_where_required);
 }
 
-TEST(Veto, AnErrorThatStaysTheSameIsNotReduced) {
+TEST(Veto, UnchangedErrorIsRejectedAsNotReduced) {
   Claim claim = sound();
   claim.error_with = claim.error_without;
   EXPECT_EQ(veto_of(claim), Veto::error_not_reduced);
 }
 
-TEST(Veto, EachHasItsOwnReason) {
+TEST(Veto, EachVetoHasADistinctReason) {
   std::set<std::string_view> reasons;
   for (const Veto veto : {Veto::size_uncertain, Veto::size_beyond_range, Veto::error_not_reduced,
                           Veto::not_predictive, Veto::not_tested, Veto::absent_where_required})

@@ -56,7 +56,7 @@ TEST(Descent, StaysWithinBoundsAndMovesAlongThem) {
   EXPECT_NEAR(400 * x * x * x - 98 * x - 2, 0, 1e-3);
 }
 
-TEST(Descent, ACoordinateThatIsPushedAgainstItsBoundLeavesTheOthersTheirWholeStep) {
+TEST(Descent, CoordinateAtABoundDoesNotReduceOtherSteps) {
   const NormalEquations normal{Eigen::Vector2d(1, 1), (Eigen::Matrix2d() << 2, 1.9, 1.9, 2).finished()};
   const StepBounds bounds{Eigen::Vector2d(0, -10), Eigen::Vector2d(10, 10)};
   const Eigen::VectorXd step = damped_step(normal, bounds, 0, {});
@@ -81,7 +81,7 @@ TEST(Descent, ACoordinateWithoutCurvatureIsDampedByTheOthers) {
   EXPECT_NEAR(step(1), 1 / (0.1 * 0.01 * 100), 1e-3);
 }
 
-TEST(Descent, LeavesAnImpossibleStart) {
+TEST(Descent, LeavesAStartWithInfiniteLoss) {
   struct Impossible : Rosenbrock {
     static double loss(const Eigen::Vector2d& at) {
       return at(0) < -1 ? std::numeric_limits<double>::infinity() : residuals(at).squaredNorm();
@@ -105,7 +105,7 @@ TEST(Descent, CountsStepsAndTrials) {
   EXPECT_EQ(again.losses, 6);
 }
 
-TEST(Descent, WithoutCoordinatesTheStartIsTheEnd) {
+TEST(Descent, WithoutCoordinatesTheStartIsReturned) {
   struct Constant {
     static double loss(double value) { return value; }
     static NormalEquations normal(double /*value*/) { return {}; }

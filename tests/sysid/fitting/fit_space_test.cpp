@@ -15,7 +15,7 @@ namespace {
 
 /// When a cause is added, the parameters of a nonlinear envelope are fitted a second time. A linear envelope
 /// has no such parameters.
-TEST(IsMovable, OfTheEnvelopesWhereTheyAreBentAlone) {
+TEST(IsMovable, EnvelopeParametersMoveOnlyIfNonlinear) {
   for (const double end_kpa : {0.0, 50.0}) {
     const model::Model plays = model::with_block(
         {}, {model::block_type<model::PrandtlIshlinskii>(), {10, 0, 0, end_kpa, 0, 0.2, 5, 0.1}});

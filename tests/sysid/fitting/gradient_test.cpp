@@ -95,7 +95,7 @@ TEST_P(GradientOf, AgreesWithCentralDifferences) {
 INSTANTIATE_TEST_SUITE_P(Operations, GradientOf, ::testing::ValuesIn(operations()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(Gradient, AssignmentsAreTheirOperators) {
+TEST(Gradient, CompoundAssignmentsMatchTheBinaryOperators) {
   const Number x = seeded(0.7, 0, 1), y = seeded(1.9, 1, 1);
   Number z = x;
   z += y;
@@ -107,7 +107,7 @@ TEST(Gradient, AssignmentsAreTheirOperators) {
   EXPECT_TRUE(z.v == same.v);
 }
 
-TEST(Gradient, IsAssignedWhatItStandsInItself) {
+TEST(Gradient, AssignmentSupportsAliasing) {
   const Number x = seeded(0.7, 0, 1), y = seeded(1.9, 3, 1);
   Number z = x;
   z = y - z * z / (z + y);
@@ -116,7 +116,7 @@ TEST(Gradient, IsAssignedWhatItStandsInItself) {
   EXPECT_TRUE(z.v == other.v);
 }
 
-TEST(Gradient, ComparesValuesOfFormulas) {
+TEST(Gradient, ExpressionsCompareByValue) {
   const Number x = seeded(0.7, 0, 1), y = seeded(1.9, 1, 1);
   EXPECT_TRUE(x + y > 2.5);
   EXPECT_TRUE(x * y < y);
@@ -124,7 +124,7 @@ TEST(Gradient, ComparesValuesOfFormulas) {
   EXPECT_FALSE(1.0 >= y);
 }
 
-TEST(Gradient, DerivativesDifferInAnyPlace) {
+TEST(Gradient, DerivativesAreUnequalIfOneElementDiffers) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(seeded(1, i, 1).v == Number(1.0).v) << i;
   EXPECT_TRUE(seeded(1, 2, 0).v == Number(2.0).v);
 }

@@ -27,7 +27,7 @@ struct Predicted {
   }
 };
 
-TEST(HeldOutLosses, OfAModelThatIsOffByAMillimetreAreOneInEveryBlock) {
+TEST(HeldOutLosses, OneMillimetreErrorGivesALossOfOneInEveryBlock) {
   const Predicted off(1);
   for (const Division& division :
        {divide(off.records, 8), divide_into_fifths(off.records), divide_into_halves(off.records)}) {
@@ -39,7 +39,7 @@ TEST(HeldOutLosses, OfAModelThatIsOffByAMillimetreAreOneInEveryBlock) {
   }
 }
 
-TEST(HeldOutLosses, AreThoseOfAFitThatNeverSawTheBlock) {
+TEST(HeldOutLosses, ComeFromAFitWithoutTheBlock) {
   const Predicted exact(0);
   const Division division = divide_into_fifths(exact.records);
   // This function replaces the fit. It counts the readings of the last block of the second log and returns
@@ -56,7 +56,7 @@ TEST(HeldOutLosses, AreThoseOfAFitThatNeverSawTheBlock) {
   EXPECT_NEAR(losses.back(), 0, 1e-18);
 }
 
-TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
+TEST(HeldOutLosses, EqualTheSquaredSpanForALargeError) {
   const Predicted far(1e6);
   const Division division = divide(far.records, 8);
   const BlockLosses losses =

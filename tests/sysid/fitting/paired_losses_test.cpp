@@ -8,7 +8,7 @@
 namespace softgrip::sysid::paired_losses_test {
 namespace {
 
-TEST(StatisticOfDraws, DrawsAsManyBlocksAsThereAreAndTheSameForASeed) {
+TEST(StatisticOfDraws, EachDrawHasTheBlockCountAndDependsOnTheSeed) {
   const auto sum = [](std::span<const std::size_t> indices) {
     EXPECT_EQ(indices.size(), 5U);
     double total = 0;
@@ -31,7 +31,7 @@ TEST(WinningShare, CountsTiesHalf) {
   EXPECT_EQ(winning_share({1, 2, 3}, {1, 2, 3}, 1), 0.5);
 }
 
-TEST(IsMissed, WhereEveryDrawOfBlocksSaysSoAndItIsWorthSomething) {
+TEST(IsMissed, RequiresALargeLossReductionInEveryResample) {
   const BlockLosses with(12, 1.0), without(12, 1.5);
   EXPECT_TRUE(is_missed(without, with, 0.4, 1));
   EXPECT_FALSE(is_missed(without, with, 0.6, 1)) << "the mean difference of the losses is smaller than 0.6";
@@ -42,7 +42,7 @@ TEST(IsMissed, WhereEveryDrawOfBlocksSaysSoAndItIsWorthSomething) {
       << "a single block causes the complete mean difference of 1";
 }
 
-TEST(MeanLogRatio, OneBlockThatWentAstrayDoesNotOutweighTheOthers) {
+TEST(MeanLogRatio, OneOutlyingBlockDoesNotDominate) {
   BlockLosses worse(12, 2.0), better(12, 1.0);
   better.front() = 15;
   EXPECT_LT(mean_difference(worse, better, 1).lower, 0);
@@ -53,14 +53,14 @@ TEST(MeanLogRatio, OneBlockThatWentAstrayDoesNotOutweighTheOthers) {
   EXPECT_LT(back.upper, 0);
 }
 
-TEST(MeanLogRatio, ABlockWithoutLossIsATie) {
+TEST(MeanLogRatio, BlockWithZeroLossCountsAsATie) {
   const Spread ratio = mean_log_ratio({0, 4, 4, 4}, {1, 4, 0, 4}, 1);
   EXPECT_EQ(ratio.value, 0);
   EXPECT_EQ(ratio.lower, 0);
   EXPECT_EQ(ratio.upper, 0);
 }
 
-TEST(LossDifference, ComesWithItsStandardError) {
+TEST(LossDifference, StandardErrorMatchesTheBlockScatter) {
   const LossDifference same = loss_difference({1, 2, 3, 4}, {1, 2, 3, 4});
   EXPECT_EQ(same.mean_mm2, 0);
   EXPECT_EQ(same.standard_error_mm2, 0);
@@ -69,7 +69,7 @@ TEST(LossDifference, ComesWithItsStandardError) {
   EXPECT_DOUBLE_EQ(worse.standard_error_mm2, std::sqrt(4.0 / 3 / 4));
 }
 
-TEST(IsClearlyLess, InTheMeanOrInMostBlocks) {
+TEST(IsClearlyLess, ComparesTheMeanAndTheMajorityOfBlocks) {
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 1}, {2, 2, 4, 4}));
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 30}, {2, 2, 2, 90})) << "one block has a large loss with both models";
   EXPECT_FALSE(is_clearly_less({1, 2, 3, 4}, {1, 2, 3, 4}));

@@ -181,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, BothWays, testing::ValuesIn(worlds()),
                          [](const auto& world) { return world.param.name; });
 
 /// Compares the derivatives with central differences of the prediction of the model.
-TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
+TEST(ChainResiduals, DerivativesMatchCentralDifferences) {
   World world{"TwinUnknownStart", bench_twin(), true, false, true};
   const std::vector<Record> records = records_of(world);
   const FitSpace space(world.model, records, all_but_the_exponent(world.model));
@@ -215,7 +215,7 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
 
 /// The measured pressure begins slightly below zero. At this pressure, the rest position of a soft spring is
 /// far from zero.
-TEST(SeparableResiduals, AgreeWithTheModelWhereABranchHasNextToNoSpring) {
+TEST(SeparableResiduals, MatchTheModelForABranchWithNearZeroStiffness) {
   for (const double stiffness : {1e-3, 1e-9, 1e-14, 0.0}) {
     Model model = loaded("zhang2025");
     model.blocks.back().values[1] = stiffness;
@@ -243,7 +243,7 @@ TEST(SeparableResiduals, AgreeWithTheModelWhereABranchHasNextToNoSpring) {
   }
 }
 
-TEST(SeparableResiduals, AreRefusedForOtherChains) {
+TEST(SeparableResiduals, AreUnavailableForUnsupportedModels) {
   const World world{"Base", loaded("zhang2025")};
   const std::vector<Record> records = records_of(world);
   Model model = world.model;

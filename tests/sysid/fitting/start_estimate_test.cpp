@@ -68,7 +68,7 @@ std::vector<std::size_t> moments_to_cut(const Record& record) {
   return moments;
 }
 
-TEST(SamplesForStart, AreAFewPercentAFewSecondsAndAtMostHalf) {
+TEST(SamplesForStart, CoverFivePercentTwoSecondsOrHalfTheRecord) {
   Record record = whole(loaded("bench_twin"), SignalName::tp1);
   const auto used_s = [&](double length_s) {
     for (std::size_t i = 0; i < record.size(); ++i)
@@ -80,7 +80,7 @@ TEST(SamplesForStart, AreAFewPercentAFewSecondsAndAtMostHalf) {
   EXPECT_NEAR(used_s(3), 1.5, 0.01);
 }
 
-TEST(EstimatedStart, UsesNoReadingBehindTheFirst) {
+TEST(EstimatedStart, IgnoresReadingsAfterTheInitialInterval) {
   for (const model::Model& finger : fingers()) {
     for (const Start known : {Start::automatic, Start::rest, Start::unknown}) {
       for (const std::size_t first : {0U, 700U}) {
@@ -98,7 +98,7 @@ TEST(EstimatedStart, UsesNoReadingBehindTheFirst) {
   }
 }
 
-TEST(EstimatedStart, AShiftOfAllReadingsShiftsTheOffsetAndChangesNoError) {
+TEST(EstimatedStart, ShiftOfAllReadingsChangesOnlyTheOffset) {
   for (const model::Model& finger : fingers()) {
     for (const std::size_t first : {0U, 700U, 1100U}) {
       const Record record = cut(finger, SignalName::tp1, first);
@@ -111,7 +111,7 @@ TEST(EstimatedStart, AShiftOfAllReadingsShiftsTheOffsetAndChangesNoError) {
   }
 }
 
-TEST(EstimatedStart, OfARunFromRestIsRest) {
+TEST(EstimatedStart, RunFromRestIsEstimatedAtRest) {
   for (const model::Model& finger : fingers()) {
     for (const SignalName signal : {SignalName::tp1, SignalName::steps, SignalName::sp2}) {
       const Record record = whole(finger, signal);
@@ -125,7 +125,7 @@ TEST(EstimatedStart, OfARunFromRestIsRest) {
 /// The pressure cycles between two values, and the hysteresis of this finger needs many cycles to settle. The
 /// model has an error that a wrong initial state could explain. Therefore the first half cycle of the log
 /// does not suffice to estimate the initial state.
-TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
+TEST(EstimatedStart, CyclicHysteresisIsPredictedFromAMidCycleStart) {
   model::Model finger;
   finger.name = "slow_to_cycle";
   finger.source = "model made for this test";
@@ -156,7 +156,7 @@ TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
 
 /// A model without the delay has an error of at least 1 mm on a ramp. The estimate must not explain this
 /// error by another start state.
-TEST(EstimatedStart, AnErrorOfTheModelIsNotTakenForAStart) {
+TEST(EstimatedStart, ModelErrorIsNotAttributedToTheStart) {
   const model::Model finger = loaded("bench_twin");
   model::Model without_delay = finger;
   std::erase_if(without_delay.blocks,
@@ -165,7 +165,7 @@ TEST(EstimatedStart, AnErrorOfTheModelIsNotTakenForAStart) {
   EXPECT_TRUE(is_at_rest(estimated_start(without_delay, record), record));
 }
 
-TEST(EstimatedStart, OfAKnownRestHasNoHysteresisAndNoCreep) {
+TEST(EstimatedStart, KnownRestHasNoHysteresisOrCreep) {
   const model::Model finger = loaded("bench_twin");
   const Record record = cut(finger, SignalName::tp1, 700, {.start = Start::rest});
   EXPECT_TRUE(is_at_rest(estimated_start(finger, record), record));
@@ -177,7 +177,7 @@ TEST(EstimatedStart, OfAKnownRestHasNoHysteresisAndNoCreep) {
 /// prediction may be larger than for the same readings in the complete log. The increase may be at most 3 %
 /// of the span as RMS over all cuts, and at most 8 % for a single cut. The model is exact, so the estimated
 /// start state is the only cause of the increase.
-TEST(EstimatedStart, ALogThatIsCutAnywhereIsPredictedNearlyAsWell) {
+TEST(EstimatedStart, CutLogIsPredictedNearlyAsWellAsAWholeLog) {
   for (const model::Model& finger : fingers()) {
     for (const SignalName signal : {SignalName::tp1, SignalName::sp2}) {
       const Record record = whole(finger, signal);
@@ -200,7 +200,7 @@ TEST(EstimatedStart, ALogThatIsCutAnywhereIsPredictedNearlyAsWell) {
   }
 }
 
-TEST(EstimatedStart, WithoutReadingsIsRestWithoutOffset) {
+TEST(EstimatedStart, RecordWithoutReadingsStartsAtRest) {
   const model::Model finger = loaded("bench_twin");
   Record record = cut(finger, SignalName::tp1, 700);
   for (double& y : record.reading_mm) y = std::nan("");

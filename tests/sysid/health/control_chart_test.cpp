@@ -26,7 +26,7 @@ class Healthy {
 
 // Source of the two-sided quantiles of Student's t: Abramowitz and Stegun, table 26.10. The quantiles for p =
 // 0.05 and p = 0.001 correspond to the normal values 1.960 and 3.291.
-TEST(ControlChart, WallacesFormulaTurnsStudentsTIntoANormalValue) {
+TEST(ControlChart, WallaceFormulaConvertsStudentTToNormal) {
   EXPECT_NEAR(normal_of_t(2.776, 4), 1.960, 0.02);
   EXPECT_NEAR(normal_of_t(2.228, 10), 1.960, 0.01);
   EXPECT_NEAR(normal_of_t(4.587, 10), 3.291, 0.02);
@@ -38,7 +38,7 @@ TEST(ControlChart, WallacesFormulaTurnsStudentsTIntoANormalValue) {
   EXPECT_LT(normal_of_t(636.6, 1), 3.291);
 }
 
-TEST(ControlChart, HealthyValuesBecomeIndependentStandardNormalOnes) {
+TEST(ControlChart, HealthyValuesAreStandardisedAndUncorrelated) {
   Healthy healthy(3, 40, 7);
   double sum = 0, squares = 0, products = 0, beyond_two = 0;
   constexpr int runs = 4000, length = 30;
@@ -75,7 +75,7 @@ int length_of_run(Healthy& healthy, const ChartLimits& limits) {
   return length;
 }
 
-TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
+TEST(ControlChart, InControlRunLengthMatchesTheStatedValue) {
   Healthy healthy(5, -2, 0.03);
   for (const double stated : {100.0, 400.0}) {
     const ChartLimits limits = ChartLimits::for_run_length(stated);
@@ -90,7 +90,7 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
 }
 
 // A chart with few points must not have a higher alarm rate than a chart with many points.
-TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
+TEST(ControlChart, NewChartsHaveASimilarFalseAlarmRate) {
   Healthy healthy(23, 0, 1);
   const ChartLimits limits = ChartLimits::for_run_length(20000);
   int alarms = 0;
@@ -121,7 +121,7 @@ class Weather {
   double persistence_, now_ = 0;
 };
 
-TEST(ControlChart, FindsHowMuchValuesTakeAfterTheOneBefore) {
+TEST(ControlChart, PersistenceEstimatesTheAutocorrelation) {
   for (const double persistence : {0.0, 0.5, 0.8}) {
     Weather weather(29, persistence);
     RunningReference reference;
@@ -132,7 +132,7 @@ TEST(ControlChart, FindsHowMuchValuesTakeAfterTheOneBefore) {
 
 // Effects of the weather last for days. If the chart treated successive days as independent, two thirds of
 // the charts would raise a false alarm.
-TEST(ControlChart, WeatherThatStaysIsSeldomAnAlarm) {
+TEST(ControlChart, AutocorrelatedValuesSeldomRaiseAnAlarm) {
   const ChartLimits limits = ChartLimits::for_run_length(30000);
   int alarms = 0;
   constexpr int charts = 1000;
@@ -172,7 +172,7 @@ int noticed_after(double spreads, int healthy_points) {
   return delays[50];
 }
 
-TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
+TEST(ControlChart, LargeChangesAlarmEarlierThanSmallOnes) {
   EXPECT_EQ(noticed_after(10, 20), 1);
   EXPECT_LE(noticed_after(4, 20), 7);
   EXPECT_LE(noticed_after(2, 40), 15);
@@ -181,7 +181,7 @@ TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
 
 /// The chart must not add points of a possible change to its reference. The reference has only 8 healthy
 /// values, so the changed values would soon dominate it.
-TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
+TEST(ControlChart, ChangeSoonAfterTheStartIsDetected) {
   int noticed = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     Healthy healthy(500 + seed, 5, 0.2);
@@ -193,7 +193,7 @@ TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
   EXPECT_GE(noticed, 94);
 }
 
-TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
+TEST(ControlChart, AlarmStatesTheStartAndSizeOfTheChange) {
   Healthy healthy(7, 5, 0.2);
   ControlChart chart(ChartLimits::for_run_length(30000), least);
   std::vector<double> values;
@@ -212,7 +212,7 @@ TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
   EXPECT_NEAR(chart.references().at(recipe).mean(), usual, 1e-12);
 }
 
-TEST(ControlChart, WhatIsLargeAtOnceHadBegunBeforeWhereTheSumSaysSo) {
+TEST(ControlChart, CusumDatesAGradualChangeBeforeTheAlarm) {
   Healthy healthy(31, 5, 0.2);
   ControlChart chart(ChartLimits::for_run_length(30000), least);
   for (int i = 0; i < 60; ++i) chart.add({{recipe, healthy()}});
@@ -222,7 +222,7 @@ TEST(ControlChart, WhatIsLargeAtOnceHadBegunBeforeWhereTheSumSaysSo) {
   EXPECT_NEAR(static_cast<double>(chart.alarm()->since), 61, 2);
 }
 
-TEST(ControlChart, TakesSomebodyElsesAlarm) {
+TEST(ControlChart, AcceptsAnExternalAlarmWithAnEarlierStart) {
   Healthy healthy(37, 5, 0.2);
   ControlChart chart(ChartLimits::for_run_length(30000), least);
   for (int i = 0; i < 40; ++i) chart.add({{recipe, healthy()}});
@@ -245,7 +245,7 @@ TEST(ControlChart, TakesSomebodyElsesAlarm) {
   EXPECT_EQ(chart.references().at(recipe).count(), 40U);
 }
 
-TEST(ControlChart, KnowsNothingFromUnitsAndFromWhereZeroIs) {
+TEST(ControlChart, AlarmIsIndependentOfUnitAndZero) {
   std::vector<double> values;
   Healthy healthy(11, 0, 1);
   for (int i = 0; i < 60; ++i) values.push_back(healthy() + (i > 40 ? 3 : 0));
@@ -262,7 +262,7 @@ TEST(ControlChart, KnowsNothingFromUnitsAndFromWhereZeroIs) {
   EXPECT_EQ(one.alarm()->noticed, other.alarm()->noticed);
 }
 
-TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
+TEST(ControlChart, RecipesHaveSeparateReferences) {
   Healthy healthy(13, 0, 0.05);
   ControlChart chart(ChartLimits::for_run_length(30000), least);
   for (int i = 0; i < 200; ++i) {
@@ -276,7 +276,7 @@ TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
   EXPECT_FALSE(chart.alarm());
 }
 
-TEST(ControlChart, RecipesThatMoveTogetherAlarmNoMoreOftenThanOne) {
+TEST(ControlChart, CorrelatedRecipesDoNotRaiseTheAlarmRate) {
   const ChartLimits limits = ChartLimits::for_run_length(200);
   double total = 0;
   Healthy healthy(17, 0, 1);
@@ -292,7 +292,7 @@ TEST(ControlChart, RecipesThatMoveTogetherAlarmNoMoreOftenThanOne) {
   EXPECT_GT(total / runs, 0.9 * 200);
 }
 
-TEST(ControlChart, DifferencesThatMatterToNobodyAreNone) {
+TEST(ControlChart, NegligibleDifferencesRaiseNoAlarm) {
   ControlChart chart(ChartLimits::for_run_length(1000), 0.01);
   for (int i = 0; i < 20; ++i) chart.add({{recipe, 1.0}});
   for (int i = 0; i < 5; ++i) chart.add({{recipe, 1.004}});

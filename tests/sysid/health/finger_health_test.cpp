@@ -75,7 +75,7 @@ FingerHealth judged(const Life& life, const std::vector<Note>& notes = {}) {
 
 // Each finger has 9 charts. The stated rate is one alarm in 3650 points, over all charts of a finger. For 400
 // fingers in 60 days, 6.6 alarms are expected.
-TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
+TEST(FingerHealth, HealthyFingerAlarmsNoMoreOftenThanStated) {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
     Life life;
@@ -88,11 +88,11 @@ TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
   RecordProperty("alarms_in_400_lives", alarms);
 }
 
-TEST(FingerHealth, OfAHealthyFingerIsSteady) {
+TEST(FingerHealth, HealthyFingerIsSteady) {
   EXPECT_EQ(judged({}).state, FingerState::steady);
 }
 
-TEST(FingerHealth, LearnsBeforeItJudges) {
+TEST(FingerHealth, StateIsLearningWithTooFewGrips) {
   Life life;
   life.days = 2;
   const FingerHealth health = judged(life);
@@ -100,7 +100,7 @@ TEST(FingerHealth, LearnsBeforeItJudges) {
   EXPECT_NE(health_sentence(health, {}).find("too few grips"), std::string::npos);
 }
 
-TEST(FingerHealth, ADayIsAPointAndTellsItsGrips) {
+TEST(FingerHealth, GripsOfOneDayFormOnePoint) {
   const FingerHealth health = judged({});
   ASSERT_EQ(health.points.size(), 30U);
   EXPECT_EQ(health.points[4].label, "2026-01-05");
@@ -109,7 +109,7 @@ TEST(FingerHealth, ADayIsAPointAndTellsItsGrips) {
   EXPECT_EQ(single.points.size(), 90U);
 }
 
-TEST(FingerHealth, TheOrderOfTheRunsIsThatOfTheirTimes) {
+TEST(FingerHealth, RunsAreSortedByStartTime) {
   std::vector<ScoredRun> runs = changed({{HealthNumber::gain, -2}}).runs();
   std::reverse(runs.begin(), runs.end());
   const FingerHealth health = judge_finger("left", runs, {}, base, {});
@@ -117,7 +117,7 @@ TEST(FingerHealth, TheOrderOfTheRunsIsThatOfTheirTimes) {
   EXPECT_EQ(health.points[health.alarms[0].since].label, day_text(20));
 }
 
-TEST(FingerHealth, AnAlarmSaysSinceWhenByHowMuchAndAfterHowManyGrips) {
+TEST(FingerHealth, AlarmStatesStartSizeAndNumberOfGrips) {
   const FingerHealth health = judged(changed({{HealthNumber::gain, -2}}));
   EXPECT_EQ(health.state, FingerState::alarm);
   ASSERT_EQ(health.alarms.size(), 1U);
@@ -129,7 +129,7 @@ TEST(FingerHealth, AnAlarmSaysSinceWhenByHowMuchAndAfterHowManyGrips) {
   EXPECT_NEAR(health.references[0]->mean, 32, 0.2);
 }
 
-TEST(FingerHealth, WhatWasMendedBeginsTheChartsAnew) {
+TEST(FingerHealth, MaintenanceRestartsTheChartsOfTheFinger) {
   const Life life = changed({{HealthNumber::gain, -2}});
   const std::vector<Note> notes{{day_text(20), "left", "finger replaced"}};
   const FingerHealth health = judged(life, notes);
@@ -143,7 +143,7 @@ TEST(FingerHealth, WhatWasMendedBeginsTheChartsAnew) {
   EXPECT_EQ(judged(life, {{day_text(20), "", "all fingers replaced"}}).state, FingerState::steady);
 }
 
-TEST(FingerHealth, AnAlarmThatWasMendedIsRememberedAndDoesNotStand) {
+TEST(FingerHealth, AlarmBeforeMaintenanceIsListedButNotActive) {
   const FingerHealth health =
       judged(changed({{HealthNumber::gain, -2}}), {{day_text(25), "left", "finger replaced"}});
   ASSERT_EQ(health.alarms.size(), 1U);
@@ -151,7 +151,7 @@ TEST(FingerHealth, AnAlarmThatWasMendedIsRememberedAndDoesNotStand) {
   EXPECT_EQ(health.state, FingerState::steady);
 }
 
-TEST(FingerHealth, AnotherRecipeIsNoChange) {
+TEST(FingerHealth, NewRecipeRaisesNoAlarm) {
   std::vector<ScoredRun> runs = Life{}.runs();
   Life other = changed({{HealthNumber::contact, -6}, {HealthNumber::time_to_grip, 4}});
   other.from_day = 0;
@@ -162,7 +162,7 @@ TEST(FingerHealth, AnotherRecipeIsNoChange) {
   EXPECT_EQ(judge_finger("left", runs, {}, base, {}).state, FingerState::steady);
 }
 
-TEST(FingerHealth, ANumberThatNoRecordingHasIsAbsent) {
+TEST(FingerHealth, IndicatorWithoutRecordingIsNullInJson) {
   std::vector<ScoredRun> runs = Life{}.runs();
   for (ScoredRun& run : runs) run.score[HealthNumber::leak] = NAN;
   const FingerHealth health = judge_finger("left", runs, {}, base, {});
@@ -173,7 +173,7 @@ TEST(FingerHealth, ANumberThatNoRecordingHasIsAbsent) {
   EXPECT_TRUE(json["numbers"]["gain_mm"]["value"].is_number());
 }
 
-TEST(FingerHealth, WhatAllFingersShareIsTold) {
+TEST(FingerHealth, SharedChangesNeedTheSameSignInAllFingers) {
   const FingerHealth healthy = judged({});
   const FingerHealth less = judged(changed({{HealthNumber::gain, -2}, {HealthNumber::zero, 1}}));
   const FingerHealth also = judged(changed({{HealthNumber::gain, -3}, {HealthNumber::zero, -1}}));
@@ -188,7 +188,7 @@ std::string first_suspect(const Life& life) {
   return suspicion.suspects.empty() ? "" : suspicion.suspects.front().id;
 }
 
-TEST(Suspicion, NamesTheCauseWhoseSignsAreSeen) {
+TEST(Suspicion, NamesTheCauseWithMatchingSymptoms) {
   EXPECT_EQ(first_suspect(changed({{HealthNumber::gain, -2}})), "ageing");
   EXPECT_EQ(first_suspect(changed({{HealthNumber::gain, -2}, {HealthNumber::pressure_loss, 2}})), "leak");
   EXPECT_EQ(first_suspect(changed({{HealthNumber::zero, 0.5}, {HealthNumber::contact, 0.5}})),
@@ -198,7 +198,7 @@ TEST(Suspicion, NamesTheCauseWhoseSignsAreSeen) {
   EXPECT_EQ(first_suspect({}), "");
 }
 
-TEST(Suspicion, ListsWhatExplainsAsMuchAndWhatTellsThemApart) {
+TEST(Suspicion, ListsAllEquallyLikelyCausesWithNextSteps) {
   const Suspicion suspicion = suspicion_of(judged(changed({{HealthNumber::lag, 0.1}})));
   std::vector<std::string> ids;
   for (const Suspect& suspect : suspicion.suspects) {
@@ -210,18 +210,18 @@ TEST(Suspicion, ListsWhatExplainsAsMuchAndWhatTellsThemApart) {
     EXPECT_NE(std::find(ids.begin(), ids.end(), id), ids.end()) << id;
 }
 
-TEST(Suspicion, ADirectionThatTheCauseDoesNotHaveIsNoSignOfIt) {
+TEST(Suspicion, ChangeInTheWrongDirectionIsNoSymptom) {
   EXPECT_EQ(first_suspect(changed({{HealthNumber::creep, -0.5}})), "");
   const FingerHealth health = judged(changed({{HealthNumber::creep, -0.5}}));
   EXPECT_NE(health_sentence(health, suspicion_of(health)).find("No known cause"), std::string::npos);
 }
 
-TEST(Suspicion, TheTimeToTheGripIsNobodysSignWhereAnythingElseAlarms) {
+TEST(Suspicion, TimeToGripIsIgnoredIfAnotherIndicatorAlarms) {
   EXPECT_EQ(first_suspect(changed({{HealthNumber::zero, 0.5}, {HealthNumber::time_to_grip, 1}})),
             "sensor_drift");
 }
 
-TEST(Suspicion, EverySignIsSaidOnceAndEveryCauseWithSignsCanBeNamed) {
+TEST(Suspicion, EveryCauseWithSymptomsCanBeNamed) {
   for (const std::string_view id : sysid::changes()) {
     Life life;
     life.from_day = 20;
@@ -240,7 +240,7 @@ TEST(Suspicion, EverySignIsSaidOnceAndEveryCauseWithSignsCanBeNamed) {
   }
 }
 
-TEST(HealthPage, TellsTheVerdictTheAlarmAndWhatWasMended) {
+TEST(HealthPage, ShowsVerdictAlarmAndEscapedMaintenanceNotes) {
   const FingerHealth health = judged(changed({{HealthNumber::gain, -2}, {HealthNumber::pressure_loss, 2}}),
                                      {{day_text(5), "left", "sensor <clamped> again"}});
   const std::string html = health_page(health, suspicion_of(health), {"finger-3", base, {}}).to_html();
@@ -250,7 +250,7 @@ TEST(HealthPage, TellsTheVerdictTheAlarmAndWhatWasMended) {
   EXPECT_EQ(html.find("<clamped>"), std::string::npos);
 }
 
-TEST(HealthPage, OfAFingerWithoutAnyNumberIsStillOne) {
+TEST(HealthPage, FingerWithoutIndicatorsHasAPage) {
   std::vector<ScoredRun> runs = Life{}.runs();
   for (ScoredRun& run : runs) run.score = GripScore();
   const FingerHealth health = judge_finger("left", runs, {}, base, {});

@@ -17,7 +17,7 @@ GripScore scored(const GripWorld& world) {
   return score_of(grip_of(world), 0, score_base(sysid::loaded("bench_twin"), 60));
 }
 
-TEST(GripScore, OfAHealthyGripSaysThatNothingIsBesideTheBase) {
+TEST(GripScore, HealthyGripMatchesTheBaseline) {
   const ScoreBase base = score_base(sysid::loaded("bench_twin"), 60);
   EXPECT_NEAR(base.full_mm, 25, 10);
   const GripScore score = scored({});
@@ -43,13 +43,13 @@ struct Changed {
 
 class ScoredChange : public ::testing::TestWithParam<Changed> {};
 
-TEST_P(ScoredChange, IsSeenInItsNumberWithItsSize) {
+TEST_P(ScoredChange, AppearsInTheMatchingIndicatorWithTheTrueSize) {
   const Changed& changed = GetParam();
   const GripScore before = scored({}), after = scored(changed.world);
   EXPECT_NEAR(after[changed.number] - before[changed.number], changed.by, changed.tolerance);
 }
 
-TEST_P(ScoredChange, IsSeenInNoOtherNumberThatItDoesNotMove) {
+TEST_P(ScoredChange, LeavesUnrelatedIndicatorsUnchanged) {
   const Changed& changed = GetParam();
   const ScoreBase base = score_base(sysid::loaded("bench_twin"), 60);
   const GripScore before = scored({}), after = scored(changed.world);
@@ -75,13 +75,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Changed{"contact", {.object_mm = 11}, HealthNumber::contact, -1, 0.05}),
     [](const auto& test) { return test.param.what; });
 
-TEST(GripScore, ALeakLowersThePressureWhileItHolds) {
+TEST(GripScore, LeakIndicatorEqualsTheLeakRateDuringHolding) {
   const GripScore before = scored({}), after = scored({.leak_kpa_per_s = 0.5});
   EXPECT_NEAR(after[HealthNumber::leak] - before[HealthNumber::leak], 0.5, 0.03);
   EXPECT_NEAR(after[HealthNumber::gain], before[HealthNumber::gain], 1e-9);
 }
 
-TEST(GripScore, WhatARecordingDoesNotCarryIsAbsent) {
+TEST(GripScore, IndicatorsWithoutDataAreAbsent) {
   const GripScore blind = scored({.measures_pressure = false});
   EXPECT_TRUE(std::isnan(blind[HealthNumber::pressure_loss]));
   EXPECT_TRUE(std::isnan(blind[HealthNumber::leak]));
@@ -97,7 +97,7 @@ TEST(GripScore, WhatARecordingDoesNotCarryIsAbsent) {
   EXPECT_TRUE(std::isfinite(near[HealthNumber::contact]));
 }
 
-TEST(GripScore, WithoutReadingsNothingIsGuessed) {
+TEST(GripScore, MissingReadingsGiveNoDisplacementIndicators) {
   Recording recording = grip_of({.measures_pressure = false});
   for (double& reading : recording.channels[0].displacement_mm) reading = NAN;
   const GripScore score = score_of(recording, 0, score_base(sysid::loaded("bench_twin"), 60));
@@ -106,7 +106,7 @@ TEST(GripScore, WithoutReadingsNothingIsGuessed) {
     EXPECT_TRUE(std::isnan(score[number])) << sysid::info_of(number).id;
 }
 
-TEST(GripParts, HeldIsFromHoldingUntilTheCommandLetsGo) {
+TEST(GripParts, HeldLastsFromHoldingToRelease) {
   const Recording grip = grip_of({});
   const std::vector<double> predicted(grip.channels[0].size(), 0.0);
   const GripParts parts = parts_of(grip, 0, predicted, 60);
@@ -121,7 +121,7 @@ TEST(GripParts, HeldIsFromHoldingUntilTheCommandLetsGo) {
   EXPECT_EQ(parts.at.front(), Part::rest);
 }
 
-TEST(GripParts, NothingIsFreeAfterAFault) {
+TEST(GripParts, SamplesAfterAFaultBelongToNoPart) {
   Recording grip = grip_of({});
   grip.events.insert(grip.events.begin() + 1, {1.0, "fault_latched", "left", "F201", ""});
   const std::vector<double> predicted(grip.channels[0].size(), 0.0);
@@ -133,7 +133,7 @@ TEST(GripParts, NothingIsFreeAfterAFault) {
   }
 }
 
-TEST(GripParts, AStepThatEndedInHoldingWithoutATouchIsNotFree) {
+TEST(GripParts, StepWithHoldingButNoContactIsNotFreeMotion) {
   Recording grip = grip_of({});
   std::erase_if(grip.events, [](const RecordedEvent& event) { return event.kind == "contact"; });
   grip.events.insert(grip.events.begin() + 1, {2.0, "step_started", "", "1", ""});

@@ -9,7 +9,7 @@ std::optional<std::vector<Note>> notes_of(const std::string& text, document::Pro
   return read_notes("notes.yaml", text, problems);
 }
 
-TEST(NotesFile, ComesInTheOrderOfItsDates) {
+TEST(NotesFile, NotesAreSortedByDate) {
   document::Problems problems;
   const auto notes = notes_of(
       "notes:\n"
@@ -24,7 +24,7 @@ TEST(NotesFile, ComesInTheOrderOfItsDates) {
   EXPECT_EQ(notes->back().finger, "");
 }
 
-TEST(NotesFile, IsRefusedWithItsPlaceWhereItSaysNoDateOrNothing) {
+TEST(NotesFile, InvalidNotesAreRefusedWithTheLocation) {
   for (const char* text :
        {"notes:\n  - {date: yesterday, mended: x}\n", "notes:\n  - {date: 2026-11-3, mended: x}\n",
         "notes:\n  - {date: 2026-11-03}\n", "notes:\n  - {date: 2026-11-03, mended: x, fingers: left}\n",

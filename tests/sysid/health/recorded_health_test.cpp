@@ -57,7 +57,7 @@ class Recorded : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("softgrip_recorded_health_" + std::to_string(::getpid()));
 };
 
-TEST_F(Recorded, AFingerHasItsOwnBaselineOrThatOfTheRig) {
+TEST_F(Recorded, FingerUsesAnOwnBaselineOrTheRigBaseline) {
   write("recordings/one/run.csv", rows("left", 20));
   write("recordings/two/run.csv", rows("right", 20));
   write_baseline("baseline/right", 25);
@@ -74,7 +74,7 @@ TEST_F(Recorded, AFingerHasItsOwnBaselineOrThatOfTheRig) {
   EXPECT_EQ(json["fingers"][1]["finger"], "right");
 }
 
-TEST_F(Recorded, ScoresThatAreThereAreKeptAndTheirRecordingsAreNotRead) {
+TEST_F(Recorded, ExistingScoresAreKeptWithoutReadingRecordings) {
   write("recordings/one/run.csv", rows("left", 20));
   const auto first = recorded_health(question());
   ASSERT_TRUE(first);
@@ -89,7 +89,7 @@ TEST_F(Recorded, ScoresThatAreThereAreKeptAndTheirRecordingsAreNotRead) {
   EXPECT_EQ(read_scores(second->scores).size(), 2U);
 }
 
-TEST_F(Recorded, WithoutABaselineThereIsNoFinger) {
+TEST_F(Recorded, FingerWithoutABaselineIsSkipped) {
   write("recordings/one/run.csv", rows("left", 20));
   HealthQuestion asked = question();
   asked.baseline = at("nothing");

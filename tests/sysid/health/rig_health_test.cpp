@@ -89,7 +89,7 @@ std::size_t alarms_of(const RigHealth& rig) {
 
 // The 200 fingers have 16,000 points, so 4.4 alarms are expected at the stated rate. If a finger were judged
 // without its peer fingers, the weather would cause more alarms.
-TEST(RigHealth, WeatherIsNoAlarmOfAFinger) {
+TEST(RigHealth, WeatherRaisesFewAlarmsWithPeerFingers) {
   std::size_t together = 0, alone = 0, warm = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     Rig rig;
@@ -108,7 +108,7 @@ TEST(RigHealth, WeatherIsNoAlarmOfAFinger) {
   EXPECT_GE(alone, 15U);
 }
 
-TEST(RigHealth, FingersNeedNotFollowTheWeatherAlike) {
+TEST(RigHealth, UnequalWeatherSensitivityRaisesFewAlarms) {
   std::size_t blind = 0, warm = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     Rig rig;
@@ -124,7 +124,7 @@ TEST(RigHealth, FingersNeedNotFollowTheWeatherAlike) {
   EXPECT_LE(warm, 10U);
 }
 
-TEST(RigHealth, AFingerThatChangesInSpiteOfTheWeatherIsFoundAndItsMateHasNoAlarm) {
+TEST(RigHealth, ChangedFingerIsFoundWithoutAlarmsOfThePeer) {
   std::vector<int> delays;
   int false_alarms = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
@@ -142,7 +142,7 @@ TEST(RigHealth, AFingerThatChangesInSpiteOfTheWeatherIsFoundAndItsMateHasNoAlarm
   EXPECT_LE(false_alarms, 3);
 }
 
-TEST(RigHealth, AnAlarmBesideTheMatesSaysBesideWhom) {
+TEST(RigHealth, AlarmListsThePeerFingersOfTheComparison) {
   const RigHealth rig = softening(4, -0.1, 60).judged();
   ASSERT_FALSE(rig.fingers[0].alarms.empty());
   EXPECT_EQ(rig.fingers[0].alarms.front().beside, std::vector<std::string>{"right"});
@@ -152,7 +152,7 @@ TEST(RigHealth, AnAlarmBesideTheMatesSaysBesideWhom) {
   EXPECT_EQ(rig.fingers[1].state, FingerState::steady);
 }
 
-TEST(RigHealth, WhatIsUsualOfAFingerInAlarmIsWhatWasBefore) {
+TEST(RigHealth, ReferenceExcludesPointsSinceTheAlarmBegan) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const RigHealth rig = softening(seed, -0.1, 60).judged();
     for (const HealthAlarm& alarm : rig.fingers[0].standing()) {
@@ -163,7 +163,7 @@ TEST(RigHealth, WhatIsUsualOfAFingerInAlarmIsWhatWasBefore) {
   }
 }
 
-TEST(RigHealth, WhatAllFingersShareIsToldOfTheRigAndIsNoAlarm) {
+TEST(RigHealth, SharedChangeIsReportedForTheRigWithoutAlarms) {
   Rig rig;
   rig.becomes = [](const std::string&, HealthNumber number, int day) {
     return number == HealthNumber::pressure_loss && day >= 50 ? 1.0 : 0;
@@ -186,7 +186,7 @@ TEST(RigHealth, WhatAllFingersShareIsToldOfTheRigAndIsNoAlarm) {
     EXPECT_FALSE(shared.stands && shared.since == day_text(50));
 }
 
-TEST(RigHealth, AFingerWithoutMatesAlarmsByItself) {
+TEST(RigHealth, FingerWithoutPeersRaisesAnAlarm) {
   Rig rig = softening(2, -0.2, 50);
   rig.names = {"left"};
   const RigHealth judged = rig.judged();
@@ -213,7 +213,7 @@ TEST(RigHealth, AFingerInAlarmIsNoReferenceForItsPeers) {
   EXPECT_EQ(judged.fingers[1].alarms[0].since, 60U);
 }
 
-TEST(RigHealth, WhatWasMendedBeginsTheDifferencesOfTheMatesAnew) {
+TEST(RigHealth, MaintenanceRestartsThePeerDifferences) {
   Rig rig;
   rig.becomes = [](const std::string& finger, HealthNumber number, int day) {
     return finger == "right" && number == HealthNumber::zero && day >= 40 ? 1.0 : 0;
@@ -223,7 +223,7 @@ TEST(RigHealth, WhatWasMendedBeginsTheDifferencesOfTheMatesAnew) {
   EXPECT_TRUE(judged.fingers[0].unclear.empty());
 }
 
-TEST(RigHealth, ThreeFingersTellWhoseChangeItIs) {
+TEST(RigHealth, ThreeFingersIdentifyTheChangedFinger) {
   Rig rig = softening(9, -0.1, 60);
   rig.names = {"left", "middle", "right"};
   const RigHealth judged = rig.judged();
@@ -232,7 +232,7 @@ TEST(RigHealth, ThreeFingersTellWhoseChangeItIs) {
   EXPECT_EQ(judged.fingers[2].state, FingerState::steady);
 }
 
-TEST(RigHealth, WithAThermometerTheGainIsComparedAtTheDaysTemperature) {
+TEST(RigHealth, GainReferenceIncludesTheTemperatureSlope) {
   Rig rig;
   rig.thermometer = true;
   const RigHealth judged = rig.judged();
@@ -247,7 +247,7 @@ TEST(RigHealth, WithAThermometerTheGainIsComparedAtTheDaysTemperature) {
   EXPECT_NE(html.find("mm per °C"), std::string::npos);
 }
 
-TEST(RigHealth, AGainThatHasChangedAtTheSameTemperatureDoesNotFollowIt) {
+TEST(RigHealth, GainChangeAtEqualTemperatureIsNotThermal) {
   Rig rig = softening(3, -0.1, 60);
   const auto suspects = [](const RigHealth& judged) {
     std::vector<std::string> ids;
@@ -267,7 +267,7 @@ TEST(RigHealth, AGainThatHasChangedAtTheSameTemperatureDoesNotFollowIt) {
   EXPECT_FALSE(ids.empty());
 }
 
-TEST(RigHealth, WhatTheRigSharesIsASignOfWhatCameWithIt) {
+TEST(RigHealth, ConcurrentSharedChangeIsUsedAsASymptom) {
   Rig rig = softening(3, -0.3, 60);
   const RigHealth judged = rig.judged();
   ASSERT_FALSE(judged.fingers[0].standing().empty());
@@ -280,7 +280,7 @@ TEST(RigHealth, WhatTheRigSharesIsASignOfWhatCameWithIt) {
   EXPECT_TRUE(suspicion_of(judged.fingers[1], {loss}).suspects.empty());
 }
 
-TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
+TEST(RigHealth, PageStatesMissingTemperatureAndPeers) {
   Rig rig;
   rig.names = {"left"};
   const RigHealth judged = rig.judged();
@@ -289,7 +289,7 @@ TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
   EXPECT_NE(html.find("contain no other healthy finger for a comparison"), std::string::npos);
 }
 
-TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
+TEST(RigHealth, UnattributedDifferenceIsReportedAsUnclear) {
   // The effect of the weather is much larger than the change of the finger. The values of a single finger
   // therefore do not show if this finger has changed.
   int unclear = 0;

@@ -31,7 +31,7 @@ RunningReference learnt(Warm& warm, int values) {
   return reference;
 }
 
-TEST(RunningReference, FindsHowTheNumberFollowsTheTemperature) {
+TEST(RunningReference, EstimatesTheTemperatureSlope) {
   Warm warm(3);
   const RunningReference reference = learnt(warm, 60);
   ASSERT_TRUE(reference.slope());
@@ -47,7 +47,7 @@ TEST(RunningReference, FindsHowTheNumberFollowsTheTemperature) {
 // Source: Brown, Durbin and Evans. A recursive residual is the deviation of a value from the regression line
 // through all earlier values. For healthy values, these residuals are independent and have Student's t
 // distribution.
-TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormalOnes) {
+TEST(RunningReference, RecursiveResidualsAreStandardNormal) {
   double sum = 0, squares = 0, products = 0, count = 0;
   for (unsigned seed = 0; seed < 1500; ++seed) {
     Warm warm(100 + seed);
@@ -75,7 +75,7 @@ TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormal
   EXPECT_NEAR(products / count, 0, 0.03);
 }
 
-TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
+TEST(RunningReference, InsignificantTemperatureSlopeIsOmitted) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   int found = 0;
@@ -87,7 +87,7 @@ TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
   EXPECT_LE(found, 12);  // at the stated rate, 2.7 of 1000 references are expected to have a slope
 }
 
-TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {
+TEST(RunningReference, NarrowTemperatureRangeGivesNoSlope) {
   RunningReference reference;
   for (int i = 0; i < 40; ++i) {
     const double temperature_c = 20 + 0.1 * (i % 3);
@@ -96,7 +96,7 @@ TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {
   EXPECT_FALSE(reference.slope());
 }
 
-TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) {
+TEST(RunningReference, ExtrapolationAddsHalfTheTrendAsUncertainty) {
   Warm warm(11);
   const RunningReference reference = learnt(warm, 200);
   ASSERT_TRUE(reference.slope());
@@ -108,7 +108,7 @@ TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) 
   EXPECT_GT(reference.judge(reference.expected(20) + beyond, least, 20).value_or(0), 10);
 }
 
-TEST(RunningReference, AValueWithoutATemperatureIsComparedWithAll) {
+TEST(RunningReference, ValueWithoutTemperatureIsComparedWithTheMean) {
   Warm warm(13);
   const RunningReference reference = learnt(warm, 50);
   const double spread = 0.2;  // standard deviation of the values: 2 °C times 0.1 per °C
@@ -116,7 +116,7 @@ TEST(RunningReference, AValueWithoutATemperatureIsComparedWithAll) {
   EXPECT_NEAR(z, 3, 0.6);
 }
 
-TEST(RunningReference, FindsThePersistenceOfWhatTheTemperatureLeaves) {
+TEST(RunningReference, PersistenceExcludesTheTemperatureEffect) {
   std::mt19937_64 random(17);
   std::normal_distribution<double> normal;
   RunningReference reference;

@@ -19,7 +19,7 @@ ScoredRun example(const std::string& run, const std::string& finger, const std::
   return scored;
 }
 
-TEST(ScoredRun, ALineReadsBackAsItWasAndWhatIsAbsentStaysAbsent) {
+TEST(ScoredRun, LineIsReadBackWithAbsentValuesAsNan) {
   const std::string line = line_of(example("run-1", "left", "1-abc"));
   EXPECT_EQ(line.back(), '\n');
   const auto read = read_scores(line);
@@ -33,7 +33,7 @@ TEST(ScoredRun, ALineReadsBackAsItWasAndWhatIsAbsentStaysAbsent) {
   EXPECT_TRUE(std::isnan(read[0].score[sysid::HealthNumber::zero]));
 }
 
-TEST(ScoredRun, ATemperatureIsKeptAndALineWithoutOneHasNone) {
+TEST(ScoredRun, TemperatureIsOptionalInALine) {
   ScoredRun warm = example("run-1", "left", "1-abc");
   EXPECT_EQ(line_of(warm).find("temperature_c"), std::string::npos);
   EXPECT_TRUE(std::isnan(read_scores(line_of(warm))[0].temperature_c));
@@ -41,7 +41,7 @@ TEST(ScoredRun, ATemperatureIsKeptAndALineWithoutOneHasNone) {
   EXPECT_EQ(read_scores(line_of(warm))[0].temperature_c, 23.5);
 }
 
-TEST(ScoredRun, ALineThatWasCutOffCostsItselfAlone) {
+TEST(ScoredRun, TruncatedLineDoesNotAffectOtherLines) {
   const std::string first = line_of(example("run-1", "left", "a"));
   const std::string second = line_of(example("run-2", "left", "a"));
   for (std::size_t cut = 0; cut + 1 < first.size(); ++cut) {
@@ -83,7 +83,7 @@ class FoundRuns : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("softgrip_found_runs_" + std::to_string(::getpid()));
 };
 
-TEST_F(FoundRuns, AreThoseInAFolderByNameAndNothingElse) {
+TEST_F(FoundRuns, AreTheRecordingsOfAFolderSortedByName) {
   (void)run("b", "");
   (void)run("a", "");
   ASSERT_TRUE(write_file((folder / "health/health.json").string(), "{}"));
@@ -94,7 +94,7 @@ TEST_F(FoundRuns, AreThoseInAFolderByNameAndNothingElse) {
   EXPECT_EQ(found[2], (folder / "b").string());
 }
 
-TEST_F(FoundRuns, HaveTheMedianOfTheirTemperatures) {
+TEST_F(FoundRuns, HaveTheMedianRecordedTemperature) {
   const std::string path = run("a", "");
   std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm,temperature_c\n";
   for (int i = 0; i < 200; ++i) {
@@ -107,7 +107,7 @@ TEST_F(FoundRuns, HaveTheMedianOfTheirTemperatures) {
   EXPECT_NEAR(found.runs[0].temperature_c, 21.5, 0.01);
 }
 
-TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
+TEST_F(FoundRuns, UnfinishedAndNonSequenceRunsAreSkipped) {
   const std::string of_sequence =
       R"("software_version": "1", "sequence": {"name": "pick", "sha256": "0123456789"})";
   (void)run("1-good", "{" + of_sequence + R"(, "state": "complete"})");
@@ -122,7 +122,7 @@ TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
   EXPECT_NE(found.skipped[1].why.find("not belong to a single sequence"), std::string::npos);
 }
 
-TEST_F(FoundRuns, OneThatIsNotThereIsLeftOutWithTheReason) {
+TEST_F(FoundRuns, MissingRecordingIsSkippedWithAReason) {
   const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
   const std::string missing = (folder / "missing").string();
   const RunScores found = score_runs(find_runs({missing}), [&](const std::string&) { return &base; }, {});
@@ -131,7 +131,7 @@ TEST_F(FoundRuns, OneThatIsNotThereIsLeftOutWithTheReason) {
   EXPECT_NE(found.skipped[0].why.find(missing), std::string::npos) << found.skipped[0].why;
 }
 
-TEST(ScoredRun, OnlyScoresByTodaysBaselineCountAndTheLastOfThem) {
+TEST(ScoredRun, LatestScoreOfTheCurrentBaselineIsKept) {
   const FingerBase replaced{{}, "new"};
   const FingerBase kept_since{{}, "old"};
   const BaseOf base_of = [&](const std::string& finger) -> const FingerBase* {

@@ -52,7 +52,7 @@ TEST_F(Command, IdentifyWritesModelJsonAndReport) {
   EXPECT_EQ(run("validate --model result/model.yaml --data sp1.csv --at-most-percent 0.01"), 6);
 }
 
-TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
+TEST_F(Command, EveryScoreStatesTheDriveOfTheModel) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.pressure_kpa = log.pressure_command_kpa;
   write("tp1.csv", format_log(log));
@@ -76,7 +76,7 @@ TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
 
 /// If a log is cut between two cycles, where the pressure is 0, it seems to begin at rest although the finger
 /// is not at rest.
-TEST_F(Command, BeginDecidesWhatIsEstimatedOfAStart) {
+TEST_F(Command, BeginOptionSelectsTheEstimatedInitialState) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::size_t first = log.size() / 4;
   while (log.pressure_command_kpa[first] > 0) ++first;
@@ -92,7 +92,7 @@ TEST_F(Command, BeginDecidesWhatIsEstimatedOfAStart) {
   EXPECT_LT(percent("auto"), 2);
 }
 
-TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
+TEST_F(Command, ValidateReportsEachLogAboveThePermittedError) {
   write_log("tp1.csv", model::SignalName::tp1);
   write_log("hold.csv", model::SignalName::hold);
   write("model.yaml", model::to_yaml(loaded("zhang2025")));
@@ -114,7 +114,7 @@ TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
         << text << ": a log that only holds a pressure has no cycles for the settling time";
 }
 
-TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
+TEST_F(Command, WarnsOfImplausibleUnitsSignsAndColumns) {
   write("model.yaml", model::to_yaml(loaded("zhang2025")));
   const auto warned = [&](auto change) {
     Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
@@ -158,7 +158,7 @@ std::string first_lines(const std::string& text) {
   return text.substr(0, text.find("\n\n"));
 }
 
-TEST_F(Command, IdentifyStatesFirstWhatTheLogsLack) {
+TEST_F(Command, IdentifyStatesMissingExcitationFirst) {
   write("loading.csv", format_log(loading()));
   ASSERT_EQ(run("identify --starts 2 --data loading.csv --out result"), 0) << read("err.txt");
   const std::string lines = first_lines(read("out.txt"));
@@ -208,7 +208,7 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
 }
 
 /// The reading 9999 is wrong, because it exceeds any displacement in mm. The unit of the column is correct.
-TEST_F(Command, ALargeCodeIsNoUnit) {
+TEST_F(Command, ErrorCode9999IsNotTreatedAsAUnitError) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.displacement_mm[30] = log.displacement_mm[50] = 9999;
   write("codes.csv", format_log(log));
@@ -220,7 +220,7 @@ TEST_F(Command, ALargeCodeIsNoUnit) {
 
 /// The log is from a pneumatic muscle with pressures in MPa, so the displacement per unit of pressure is very
 /// large. The log is accepted, and a warning names the unit.
-TEST_F(Command, AUnitIsNamedAndWhereANumberIsOutOfItsRangeTheLogIsRefused) {
+TEST_F(Command, WrongPressureUnitIsNamedEvenIfTheLogIsRefused) {
   const auto identified = [&](double factor, const char* out) {
     Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
     for (double& kpa : log.pressure_command_kpa) kpa *= factor;
@@ -257,7 +257,7 @@ TEST_F(Command, ABadLogIsRefusedAndNothingWritten) {
   EXPECT_FALSE(fs::exists(folder_ / "result"));
 }
 
-TEST_F(Command, OtherRefusalsHaveTheirCodes) {
+TEST_F(Command, RefusedInputsGiveTheMatchingExitCode) {
   write_log("tp1.csv", model::SignalName::tp1);
   EXPECT_EQ(run("identify --data absent.csv --out result"), 4);
   EXPECT_EQ(run("identify --data tp1.csv --start absent.yaml --out result"), 4);

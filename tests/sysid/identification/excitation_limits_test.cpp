@@ -12,7 +12,7 @@ Estimate estimate(const std::string& name, bool free) {
   return one;
 }
 
-TEST(ExcitationLimits, NameTheFreeParametersThatNeedWhatIsMissing) {
+TEST(ExcitationLimits, NameTheFreeParametersWithoutExcitation) {
   Log ramp;
   for (int i = 0; i < 500; ++i) {
     ramp.time_s.push_back(0.02 * i);

@@ -41,14 +41,14 @@ std::vector<Log> two_logs(const Model& truth, double rate_hz = 50, double noise_
           simulated(truth, SignalName::sp2, rate_hz, noise_mm, 12)};
 }
 
-TEST(IntervalText, SaysWhereLogsDetermineNothing) {
+TEST(IntervalText, StatesIfTheLogsDoNotDetermineTheValue) {
   EXPECT_EQ(text_of({0.127, 0.133}, 0.13, " .. "), "0.127 .. 0.133");
   EXPECT_EQ(text_of({-1, 1}, 0.2, " to "), "-1 to 1");
   EXPECT_EQ(text_of({1e-191, 1e187}, 0.015, " .. "), "not determined by these logs");
   EXPECT_EQ(text_of({-3, 3}, 0.2, " .. "), "not determined by these logs");
 }
 
-TEST(Identify, FindsTheBaseChainFromNothingButTheData) {
+TEST(Identify, RecoversTheBaseModelFromDataAlone) {
   const Model truth = scattered(loaded("zhang2025"), 0.05, 1);
   const auto logs = two_logs(truth);
   const auto result = identify(logs, base_model(logs, 2));
@@ -59,7 +59,7 @@ TEST(Identify, FindsTheBaseChainFromNothingButTheData) {
   expect_truth(*result, truth, 2);
 }
 
-TEST(Identify, FindsLatencyWhereTheStructureHasIt) {
+TEST(Identify, RecoversTheLatencyOfTheModelStructure) {
   const Model truth = scattered(loaded("bench_twin"), 0.05, 2);
   const auto result = identify(two_logs(truth), loaded("bench_twin"));
   ASSERT_TRUE(result) << result.error();
@@ -81,7 +81,7 @@ TEST(Identify, TheUnitOfThePressureDoesNotMatter) {
 
 /// The central example of the project: if the model structure has no latency, the hysteresis block absorbs
 /// the latency of the rig.
-TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
+TEST(Identify, MissingLatencyMakesTheModelNotInvertible) {
   const auto logs = two_logs(loaded("bench_twin"));
   const auto result = identify(logs, base_model(logs, 2));
   ASSERT_TRUE(result) << result.error();
@@ -93,7 +93,7 @@ TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
 
 /// The logs were simulated by a program that shares no code with the models. Its integration method and its
 /// time step differ from those of the models.
-TEST(Identify, FindsWhatAnIndependentIntegratorSimulated) {
+TEST(Identify, RecoversParametersOfAnIndependentSimulation) {
   const IntegratedFinger finger;
   const std::vector<Log> logs{integrated(finger, SignalName::tp1, 50, 0.05, 21),
                               integrated(finger, SignalName::tp2, 50, 0.05, 22)};
@@ -128,7 +128,7 @@ TEST(Identify, AlphaAndK0AreNamedAsASum) {
   EXPECT_TRUE(find(result->combinations, "instantaneous_gain_mm_per_kpa").identifiable);
 }
 
-TEST(Identify, OnlyWhatIsFreeMoves) {
+TEST(Identify, OnlyFreeParametersChange) {
   const Model truth = loaded("bench_twin");
   Model start = truth;
   start.blocks[2].values[1] *= 1.2;
@@ -149,7 +149,7 @@ TEST(Identify, OnlyWhatIsFreeMoves) {
   }
 }
 
-TEST(Identify, AFixedK0LeavesAlphaItsInterval) {
+TEST(Identify, FixedK0MakesAlphaIdentifiable) {
   const Model truth = loaded("zhang2025");
   IdentifyOptions options;
   options.fixed = {"kelvin_voigt.k0_kpa_per_mm"};
@@ -218,7 +218,7 @@ TEST(Identify, OutliersDoNotPullARobustFit) {
   EXPECT_LT(error(*robust), 0.25 * error(*plain));
 }
 
-TEST(Identify, TheExponentIsChosenAmongThoseAskedFor) {
+TEST(Identify, ExponentIsChosenFromTheGivenValues) {
   Model truth = loaded("zhang2025");
   std::vector<double>& bw = truth.blocks[0].values;
   bw = {0.3, 0.2, 0.004, 0.006, 2};
@@ -233,7 +233,7 @@ TEST(Identify, TheExponentIsChosenAmongThoseAskedFor) {
   EXPECT_NEAR(result->rmse_mm, 0.02, 0.05 * 0.02);
 }
 
-TEST(Identify, AsManyBranchesAsAskedFor) {
+TEST(Identify, FitsTheRequestedNumberOfCreepBranches) {
   Model truth = loaded("zhang2025");
   auto& kv = truth.blocks[1].values;
   kv = {325.9, 18.0, 300.0, 6.0, 9.0, 3.0, 0.6};  // time constants of 16.7 s, 1.5 s and 0.2 s
@@ -250,7 +250,7 @@ TEST(Identify, AsManyBranchesAsAskedFor) {
 
 /// A model with a contact has no closed form, so the fit uses automatic differentiation. The fit must find
 /// the contact.
-TEST(Identify, AnyBlockCanBeFitted) {
+TEST(Identify, ContactBlockIsFitted) {
   Model truth = loaded("zhang2025");
   model::BlockSpec contact = model::default_block(*model::find_block("contact"));
   truth = model::with_block(truth, contact);
@@ -267,7 +267,7 @@ TEST(Identify, AnyBlockCanBeFitted) {
   EXPECT_NEAR(result->model.blocks[at].values[0], 18, 0.2);
 }
 
-TEST(Identify, TheSameInAnyNumberOfThreads) {
+TEST(Identify, ResultIsIndependentOfTheThreadCount) {
   const auto logs = two_logs(loaded("bench_twin"), 25);
   IdentifyOptions options;
   options.starts = 6;
@@ -280,7 +280,7 @@ TEST(Identify, TheSameInAnyNumberOfThreads) {
   EXPECT_EQ(one->multistart.rmse_mm, three->multistart.rmse_mm);
 }
 
-TEST(Identify, WhatIsHeldOutIsNotFitted) {
+TEST(Identify, HeldOutReadingsAreNotFitted) {
   const Model truth = loaded("zhang2025");
   auto logs = two_logs(truth);
   for (Log& log : logs) {
@@ -296,7 +296,7 @@ TEST(Identify, WhatIsHeldOutIsNotFitted) {
   EXPECT_NEAR(result->held_out[0].rmse_mm, 4 * std::sqrt(25.0 / 30), 0.1);
 }
 
-TEST(Identify, TheMeasuredPressureTakesTheValvesPlace) {
+TEST(Identify, MeasuredPressureReplacesAValveModel) {
   const Model truth = loaded("bench_twin");
   auto logs = two_logs(truth);
   for (Log& log : logs) {
@@ -312,7 +312,7 @@ TEST(Identify, TheMeasuredPressureTakesTheValvesPlace) {
   EXPECT_GT(find(command->combinations, "beta_over_instantaneous_gain").value, 1);
 }
 
-TEST(Identify, NoiseBlocksAreKeptAsTheyWere) {
+TEST(Identify, NoiseBlocksStayUnchanged) {
   Model start =
       model::with_block(loaded("zhang2025"), model::default_block(*model::find_block("sensor_noise")));
   const auto result = identify(two_logs(loaded("zhang2025")), start);
@@ -322,7 +322,7 @@ TEST(Identify, NoiseBlocksAreKeptAsTheyWere) {
   EXPECT_TRUE(model::validate(result->model).empty());
 }
 
-TEST(Identify, ProfilesAgreeWithIntervalsWhereTheDataAreStrong) {
+TEST(Identify, ProfileIntervalsAgreeForInformativeData) {
   const Model truth = loaded("zhang2025");
   IdentifyOptions options;
   options.profile = true;
@@ -339,7 +339,7 @@ TEST(Identify, ProfilesAgreeWithIntervalsWhereTheDataAreStrong) {
 
 /// A short version of bench/sysid_coverage. Simulates data with random true parameters and with white and
 /// correlated noise. Fits models to these data. Counts how often the interval contains the true value.
-TEST(Identify, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(Identify, IntervalCoverageIsNear95Percent) {
   std::size_t inside = 0;
   std::size_t trials = 0;
   for (const char* name : {"zhang2025", "bench_twin"}) {

@@ -28,7 +28,7 @@ std::vector<double> autoregressive(double correlation, std::size_t count, std::u
   return values;
 }
 
-TEST(NoiseModel, CountsCorrelatedSamplesForWhatTheyAreWorth) {
+TEST(NoiseModel, EffectiveSamplesDecreaseWithCorrelation) {
   for (const double correlation : {0.0, 0.5, 0.9, 0.98}) {
     const auto values = autoregressive(correlation, 60'000, 1);
     const NoiseModel noise = fit_noise(autocovariance_of({values}));
@@ -39,7 +39,7 @@ TEST(NoiseModel, CountsCorrelatedSamplesForWhatTheyAreWorth) {
   }
 }
 
-TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
+TEST(NoiseModel, GapsAndSeriesBoundariesDoNotBiasTheCorrelation) {
   auto first = autoregressive(0.8, 20'000, 2);
   first[777] = std::nan("");
   const auto second = autoregressive(0.8, 20'000, 3);
@@ -76,7 +76,7 @@ TEST(BoundedSolve, FindsTheConstrainedMinimum) {
   }
 }
 
-TEST(BoundedSolve, SurvivesTwoEqualColumns) {
+TEST(BoundedSolve, SolvesASystemWithTwoEqualColumns) {
   Eigen::MatrixXd gram(2, 2);
   gram << 1, 1, 1, 1;
   const Eigen::Vector2d wide(1e6, 1e6);
@@ -84,7 +84,7 @@ TEST(BoundedSolve, SurvivesTwoEqualColumns) {
   EXPECT_NEAR(solution.x.sum(), 1, 1e-6);
 }
 
-TEST(Cycles, AreWhatRepeats) {
+TEST(Cycles, AreFoundOnlyInARepeatedCommand) {
   const model::Model model = loaded("zhang2025");
   const auto tp1 = make_records({simulated(model, model::SignalName::tp1, 50, 0, 1)}, {});
   const auto starts = cycle_starts(tp1.front());
@@ -95,7 +95,7 @@ TEST(Cycles, AreWhatRepeats) {
   EXPECT_TRUE(std::isnan(score_of(model, hold.front(), {}, hold.front().reading_mm).settled_rmse_mm));
 }
 
-TEST(Score, OfTheTrueModelIsTheNoise) {
+TEST(Score, ErrorOfTheTrueModelEqualsTheNoise) {
   const model::Model model = loaded("bench_twin");
   const auto records = make_records({simulated(model, model::SignalName::sp1, 50, 0.05, 1)}, {});
   const Score score = score_of(model, records[0], rest_starts(model, records)[0], records[0].reading_mm);
@@ -104,7 +104,7 @@ TEST(Score, OfTheTrueModelIsTheNoise) {
   EXPECT_NEAR(fast_noise_mm(records[0]), 0.05, 0.003);
 }
 
-TEST(Score, AnotherUnitIsNoDivergence) {
+TEST(Score, ScaledReadingsAreNoDivergence) {
   const model::Model model = loaded("bench_twin");
   Log log = simulated(model, model::SignalName::sp1, 50, 0.05, 1);
   const auto diverges_at = [&](double factor, double alternating_mm) {
@@ -123,7 +123,7 @@ TEST(Score, AnotherUnitIsNoDivergence) {
                                      // command
 }
 
-TEST(Validate, EstimatesOnlyWhatTheLogLeavesOpen) {
+TEST(Validate, EstimatesTheOffsetOfLogsThatStartAtRest) {
   const model::Model model = loaded("bench_twin");
   std::vector<Log> logs{simulated(model, model::SignalName::sp1, 50, 0.05, 1),
                         simulated(model, model::SignalName::tp2, 50, 0.05, 2)};
@@ -135,7 +135,7 @@ TEST(Validate, EstimatesOnlyWhatTheLogLeavesOpen) {
   for (const Score& s : v.scores) EXPECT_NEAR(s.rmse_mm, 0.05, 0.002);
 }
 
-TEST(Records, MissingMeasuredPressuresAreFilledAndReadingsAreNot) {
+TEST(Records, MissingPressuresAreFilledButReadingsAreNot) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 1);
   log.pressure_kpa = log.pressure_command_kpa;
   for (const std::size_t i : {std::size_t{0}, std::size_t{40}, std::size_t{41}, log.size() - 1}) {

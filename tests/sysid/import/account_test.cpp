@@ -5,7 +5,7 @@
 namespace softgrip::sysid::account_test {
 namespace {
 
-TEST(RowAccount, IsBalancedOnlyWhereEveryRowHasAFate) {
+TEST(RowAccount, IsBalancedOnlyIfEveryRowIsAccountedFor) {
   RowAccount account;
   account.rows = 10;
   account.used = 6;
@@ -20,7 +20,7 @@ TEST(RowAccount, IsBalancedOnlyWhereEveryRowHasAFate) {
       "shorter segments before or after a gap)");
 }
 
-TEST(RowAccount, RowsThatTheUserLeavesOutAreNotLost) {
+TEST(RowAccount, RowsExcludedByTheUserAreNotLost) {
   RowAccount account;
   account.rows = 100;
   account.used = 30;
@@ -32,7 +32,7 @@ TEST(RowAccount, RowsThatTheUserLeavesOutAreNotLost) {
   EXPECT_EQ(account.lost_share(), 0.25);
 }
 
-TEST(RowAccount, EachReasonHasItsOwnWord) {
+TEST(RowAccount, EachReasonHasADistinctWord) {
   for (std::size_t i = 0; i < left_out_count; ++i) {
     EXPECT_FALSE(word_of(static_cast<LeftOut>(i)).empty());
     for (std::size_t j = 0; j < i; ++j)

@@ -30,7 +30,7 @@ ForeignTable table_of(const std::string& text) {
   return table ? *table : ForeignTable{};
 }
 
-TEST(Overflow, EveryClockThatIsSurelyACounterIsContinued) {
+TEST(Overflow, CounterOverflowsAreContinued) {
   struct Case {
     double begin, step, limit, period, unit_s;
   };
@@ -49,7 +49,7 @@ TEST(Overflow, EveryClockThatIsSurelyACounterIsContinued) {
   }
 }
 
-TEST(Overflow, AStepBackOfAnotherKindIsLeftAlone) {
+TEST(Overflow, OtherBackwardStepsAreUnchanged) {
   std::vector<double> corrected = counter(0, 0.02, 5, 0.3);
   std::vector<double> two_runs = counter(0, 20, 5000, 5000);
   std::vector<double> lost_rows = counter(60000, 20, 65536, 65536);
@@ -68,7 +68,7 @@ std::string two_times(double slope, double offset) {
   return text;
 }
 
-TEST(SameClock, TellsAnotherTimeFromAnotherUnitOrOrigin) {
+TEST(SameClock, SeparatesADelayFromAnotherUnitOrOrigin) {
   struct Case {
     double slope, offset;
     bool same;
@@ -81,7 +81,7 @@ TEST(SameClock, TellsAnotherTimeFromAnotherUnitOrOrigin) {
   }
 }
 
-TEST(TimesOfRoles, NamesComeBeforeTheOrderOfTheColumns) {
+TEST(TimesOfRoles, NameTakesPrecedenceOverColumnOrder) {
   const auto times_of = [](const std::string& header) {
     const ForeignTable table = table_of(header + "\n0,0,0,0\n1,1,1,1\n2,2,2,2\n");
     Mapping mapping;
@@ -97,7 +97,7 @@ TEST(TimesOfRoles, NamesComeBeforeTheOrderOfTheColumns) {
   EXPECT_EQ(times_of("time_a_s,time_b_s,set_kpa,tip_mm"), std::vector<std::size_t>{});
 }
 
-TEST(SecondsOf, TheUnitOfEachColumnHolds) {
+TEST(SecondsOf, UsesTheUnitOfEachColumn) {
   const ForeignTable table = table_of("a_time_s,b_time_ms,x\n1,1000,0\n2,2000,0\n");
   EXPECT_EQ(seconds_of(table, {}, 0), (std::vector<double>{1, 2}));
   EXPECT_EQ(seconds_of(table, {}, 1), (std::vector<double>{1, 2}));

@@ -57,7 +57,7 @@ Mapping mapping_of(const char* time, const char* command, const char* displaceme
   return mapping;
 }
 
-TEST(Convert, UnitScaleAndZero) {
+TEST(Convert, AppliesUnitScaleAndZero) {
   const std::string text = text_of("t_ms,set_psi,laser_V", [](int i, double p, double y) {
     return shortest(10.0 * i) + "," + shortest(p) + "," + shortest(2 + y);
   });
@@ -83,7 +83,7 @@ TEST(Convert, AnAngleMakesALogInDegrees) {
   }
 }
 
-TEST(Convert, OfAPathAndAnAngleThePathIsTaken) {
+TEST(Convert, DisplacementIsPreferredToAnAngle) {
   const Log log = log_of(text_of("time_s,set_kpa,angle_deg,tip_mm", [](int i, double p, double y) {
                     return plain(i, p, 3 * y) + "," + shortest(y);
                   })).log;
@@ -91,7 +91,7 @@ TEST(Convert, OfAPathAndAnAngleThePathIsTaken) {
   EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9);
 }
 
-TEST(Convert, AScaleGivesMillimetresOrTheAngleThatTheUnitNames) {
+TEST(Convert, ScaledReadingsAreMillimetresUnlessAnAngleUnitIsGiven) {
   const std::string text = text_of("time_s,set_kpa,flex_V", plain);
   Mapping mapping = mapping_of("time_s", "set_kpa", "flex_V");
   mapping[Role::displacement].scale = 2;
@@ -118,7 +118,7 @@ TEST(Convert, ZeroFirstSubtractsTheFirstValue) {
   EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9);
 }
 
-TEST(Convert, EpochsLoseNoMoreThanADoubleDoes) {
+TEST(Convert, EpochTimesKeepDoublePrecision) {
   const std::string text = text_of("timestamp,set_kpa,tip_mm", [](int i, double p, double y) {
     return fixed(1717156800 + 0.01 * i, 3) + "," + shortest(p) + "," + shortest(y);
   });
@@ -126,13 +126,13 @@ TEST(Convert, EpochsLoseNoMoreThanADoubleDoes) {
   for (int i = 0; i < 200; ++i) EXPECT_EQ(log.time_s[static_cast<std::size_t>(i)], i / 100.0);
 }
 
-TEST(Convert, WithoutACommandTheMeasuredPressureStandsForIt) {
+TEST(Convert, MeasuredPressureReplacesAMissingCommand) {
   const ImportedLog result = log_of(text_of("time_s,pressure_kpa,tip_mm", plain));
   EXPECT_EQ(result.log.pressure_command_kpa, result.log.pressure_kpa);
   EXPECT_NE(result.notes.back().find("the measured pressure is used instead"), std::string::npos);
 }
 
-TEST(Convert, WhatIsMissingOrWrongIsSaidInTheWordsOfTheOptions) {
+TEST(Convert, ErrorsNameTheMissingOptions) {
   const std::string text = text_of("time_s,set,laser_V", plain);
   const std::string said = refusal(text, mapping_of("time_s", "sett", "laser_V"));
   EXPECT_NE(said.find("command: no column 'sett'"), std::string::npos) << said;
@@ -144,7 +144,7 @@ TEST(Convert, WhatIsMissingOrWrongIsSaidInTheWordsOfTheOptions) {
   EXPECT_NE(refusal(text_of("a,b,c", plain), {}).find("--rate-hz R"), std::string::npos);
 }
 
-TEST(Convert, WhatNoOtherCommandWouldReadIsRefused) {
+TEST(Convert, InvalidResultLogIsRefused) {
   const std::string still =
       text_of("time_s,set_kpa,tip_mm", [](int i, double, double y) { return plain(i, 7, y); });
   EXPECT_NE(refusal(still, mapping_of("time_s", "set_kpa", "tip_mm"))
@@ -152,7 +152,7 @@ TEST(Convert, WhatNoOtherCommandWouldReadIsRefused) {
             std::string::npos);
 }
 
-TEST(ForeignSamples, ATimeThatGoesBackIsAProblemAtItsRow) {
+TEST(ForeignSamples, BackwardTimeIsReportedWithTheRow) {
   ForeignSamples samples;
   samples[Role::time] = {0, 1, 2, 1.5};
   samples[Role::displacement] = {0, 0, 0, 0};
@@ -163,7 +163,7 @@ TEST(ForeignSamples, ATimeThatGoesBackIsAProblemAtItsRow) {
   EXPECT_EQ(problem->row, 3U);
 }
 
-TEST(ForeignSamples, OfTwoAtOneTimeTheFirstStays) {
+TEST(ForeignSamples, FirstOfTwoSamplesWithEqualTimeIsKept) {
   ForeignSamples samples;
   samples[Role::time] = {10, 10.5, 10.5, std::nan(""), 11};
   samples[Role::displacement] = {1, 2, 3, 4, 5};
@@ -175,7 +175,7 @@ TEST(ForeignSamples, OfTwoAtOneTimeTheFirstStays) {
   EXPECT_EQ(remarks.notes.size(), 3U);
 }
 
-TEST(ForeignSamples, AHoleIsOneOnlyWhereTheCommandChanged) {
+TEST(ForeignSamples, GapCutsTheLogOnlyIfTheCommandChanged) {
   for (const double change : {0.0, 30.0}) {
     ForeignSamples samples;
     for (int i = 0; i < 200; ++i) {
@@ -192,7 +192,7 @@ TEST(ForeignSamples, AHoleIsOneOnlyWhereTheCommandChanged) {
   }
 }
 
-TEST(ForeignSamples, ASlowSensorKeepsTheCommandsBetweenItsReadings) {
+TEST(ForeignSamples, CommandsBetweenSlowReadingsAreKept) {
   ForeignSamples samples;
   for (int i = 0; i < 100; ++i) {
     samples[Role::time].push_back(0.01 * i);
@@ -208,7 +208,7 @@ TEST(ForeignSamples, ASlowSensorKeepsTheCommandsBetweenItsReadings) {
   EXPECT_EQ(remarks.notes.size(), 1U);
 }
 
-TEST(Propose, TakesWhatNamesAndUnitsSay) {
+TEST(Propose, AssignsRolesByNameAndUnit) {
   const ForeignTable table = table_of(
       text_of("Zeit [ms],supply_bar,p_soll_bar,p_ist_bar,Temp (\xc2\xb0"
               "C),Weg [mm]",
@@ -224,7 +224,7 @@ TEST(Propose, TakesWhatNamesAndUnitsSay) {
             "C)' --supply supply_bar");
 }
 
-TEST(Propose, LeavesWhatIsGivenAlone) {
+TEST(Propose, KeepsGivenAssignments) {
   const ForeignTable table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
   Mapping given;
   given[Role::pressure].columns = {"p1_kpa"};
@@ -234,7 +234,7 @@ TEST(Propose, LeavesWhatIsGivenAlone) {
 }
 
 /// Line 22 has more cells than the header. Line 40 has a cell that is not a number.
-TEST(Convert, LinesThatAreLeftOutHaveAFateBesideTwoTimes) {
+TEST(Convert, OmittedLinesAreCountedWithTwoTimeColumns) {
   const std::string text = text_of("t_set_s,set_kpa,t_tip_s,tip_mm", [](int i, double p, double y) {
     if (i == 20) return std::string("0.2,3,0.2,4,5");
     const std::string tip = i == 38 ? "broken" : shortest(y);
@@ -281,7 +281,7 @@ std::string note_of_overflow(int broken) {
   return {};
 }
 
-TEST(Convert, TheLineOfAnOverflowIsThatOfTheFile) {
+TEST(Convert, OverflowNoteStatesTheLineOfTheFile) {
   EXPECT_NE(note_of_overflow(-1).find("line 56"), std::string::npos) << note_of_overflow(-1);
   EXPECT_EQ(note_of_overflow(10), note_of_overflow(-1))
       << "a skipped row before the overflow must not change the line number";

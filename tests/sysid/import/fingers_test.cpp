@@ -19,7 +19,7 @@ ForeignTable named(const Names& names) {
   return table;
 }
 
-TEST(Fingers, NamesTellThemApart) {
+TEST(Fingers, FingersAreFoundFromColumnNames) {
   EXPECT_EQ(fingers_of(named({"t (s)", "P_left (kPa)", "P_right (kPa)", "tip_right (mm)", "tip_left (mm)"})),
             (Names{"left", "right"}));
   EXPECT_EQ(fingers_of(named({"time_s", "p1_kPa", "p2_kPa", "tip1_mm", "tip2_mm"})), (Names{"1", "2"}));
@@ -28,20 +28,20 @@ TEST(Fingers, NamesTellThemApart) {
   EXPECT_EQ(fingers_of(named({"t_s", "set_kpa", "ch0_pos_mm", "ch1_pos_mm"})), (Names{"0", "1"}));
 }
 
-TEST(Fingers, TheNameOfOneMayBeAUnit) {
+TEST(Fingers, FingerNameMayEqualAUnit) {
   EXPECT_EQ(fingers_of(named({"t_s", "Finger A set (kPa)", "Finger A tip (mm)", "Finger B set (kPa)",
                               "Finger B tip (mm)"})),
             (Names{"a", "b"}));
 }
 
-TEST(Fingers, OneFingerHasSeveralColumns) {
+TEST(Fingers, ColumnsOfOneFingerAreNotSplit) {
   EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"})), Names{});
   EXPECT_EQ(fingers_of(named({"time_s", "pd1_psi", "pd2_psi", "tip_mm"})), Names{});
   EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "tip_raw_mm", "tip_filtered_mm"})), Names{});
   EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "x_mm", "y_mm"})), Names{});
 }
 
-TEST(Fingers, AColumnBelongsToItsFingerOrToAll) {
+TEST(Fingers, ColumnBelongsToOneFingerOrToAll) {
   const Names fingers{"left", "right"};
   EXPECT_EQ(finger_of(named({"Left.tip (mm)"}).columns[0], fingers), "left");
   EXPECT_EQ(finger_of(named({"time_s"}).columns[0], fingers), "");

@@ -30,7 +30,7 @@ TEST(ArrayCollector, TallAndWideMatricesBecomeColumns) {
   EXPECT_EQ(table->notes, std::vector<std::string>{"'other' is skipped: 5 values, but other arrays have 3"});
 }
 
-TEST(Gunzipped, IsBoundedAndSaysWhatIsWrong) {
+TEST(Gunzipped, SizeIsLimitedAndErrorsAreReported) {
   // the output of `printf 'hello hello' | gzip -n`
   const std::string packed(
       "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\xcb\x48\xcd\xc9\xc9\x57\xc8\x00\x91\x00\x40\xa6\x2d\x01\x0b"
@@ -68,7 +68,7 @@ TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
 
 /// The file is a named pipe, which the function must refuse. If the function waited for a writer of the pipe,
 /// this test would never end.
-TEST(ForeignFile, APipeIsUnreadableAndNotWaitedFor) {
+TEST(ForeignFile, NamedPipeIsUnreadableWithoutWaiting) {
   const ScratchFolder scratch;
   const std::string pipe = scratch.path() + "/log.csv";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

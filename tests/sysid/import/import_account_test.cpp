@@ -261,7 +261,7 @@ void check_values(const Generated& file, const Log& log) {
   EXPECT_EQ(readings, file.readings.size());
 }
 
-TEST(ImportAccount, EachRowColumnAndOptionOfGeneratedFilesHasAFate) {
+TEST(ImportAccount, EveryRowColumnAndOptionIsAccountedFor) {
   for (unsigned seed = 0; seed < files && !HasFailure(); ++seed) {
     const Generated file = Generator(seed).make();
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + file.about);

@@ -27,7 +27,7 @@ ForeignTable table_of(const std::string& text, const TableOptions& options = {})
   return table ? *table : ForeignTable{};
 }
 
-TEST(Lvm, UnitsAndDecimalMarkStandInItsHeader) {
+TEST(Lvm, ReadsUnitsAndDecimalMarkFromTheHeader) {
   const ForeignTable table =
       table_of(header("One") + section("12:00:00,5", "0,0\t1,5\t2,5\n0,5\t3\t4\tnote\n"));
   ASSERT_EQ(table.columns.size(), 3U);
@@ -38,12 +38,12 @@ TEST(Lvm, UnitsAndDecimalMarkStandInItsHeader) {
   EXPECT_EQ(table.account.rows, 2U);
 }
 
-TEST(Lvm, TimesAreCountedWhereNoColumnHoldsThem) {
+TEST(Lvm, TimesAreComputedWithoutATimeColumn) {
   const ForeignTable table = table_of(header("No") + section("12:00:00", "\t1\t2\n\t3\t4\n\t5\t6\n"));
   EXPECT_EQ(table.columns[0].values, (std::vector<double>{0, 0.5, 1}));
 }
 
-TEST(Lvm, SectionsFollowEachOther) {
+TEST(Lvm, SectionsAreConcatenatedInTime) {
   const std::string rows = "0,0\t1\t2\n0,5\t3\t4\n";
   const ForeignTable same =
       table_of(header("One") + section("12:00:00", rows) + "\n" + section("12:00:00", rows));
@@ -53,7 +53,7 @@ TEST(Lvm, SectionsFollowEachOther) {
   EXPECT_EQ(later.columns[0].values, (std::vector<double>{0, 0.5, 10, 10.5}));
 }
 
-TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
+TEST(Lvm, DifferingOrTruncatedSectionsAreReported) {
   document::Problems problems;
   EXPECT_FALSE(read_lvm("t.lvm",
                         header("One") + section("12:00:00", "0\t1\t2\n") +
@@ -76,7 +76,7 @@ TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
 }
 
 /// The limits on rows and file size are the same for a LabVIEW text file and for every other text file.
-TEST(Lvm, HasTheBoundsOfAText) {
+TEST(Lvm, HasTheSizeLimitsOfATextFile) {
   document::Problems problems;
   const std::string bytes = header("One") + section("12:00:00,0", "0\t1\t2\n1\t3\t4\n");
   EXPECT_FALSE(read_lvm("t.lvm", bytes + std::string(most_rows, '\n'), {}, problems));
@@ -87,7 +87,7 @@ TEST(Lvm, HasTheBoundsOfAText) {
   EXPECT_EQ(table.notes.front(), "64 NUL bytes at the end of the file are left out");
 }
 
-TEST(Lvm, HasAtMostTheValuesOfATable) {
+TEST(Lvm, LimitsTheNumberOfValues) {
   std::string names = "X_Value";
   for (int i = 0; i < 2000; ++i) names += "\tY" + std::to_string(i);
   document::Problems problems;

@@ -20,7 +20,7 @@ Mapping full() {
   return mapping;
 }
 
-TEST(MappingFile, ReadsWhatItWrote) {
+TEST(MappingFile, WrittenMappingIsReadBackUnchanged) {
   document::Problems problems;
   const std::string text =
       mapping_yaml(full(), {"a\nb.csv", "0123", "CSV"}, "softgrip 1", {"a remark\nof two lines"});
@@ -30,7 +30,7 @@ TEST(MappingFile, ReadsWhatItWrote) {
   EXPECT_NE(text.find("# sha256: 0123\n"), std::string::npos);
 }
 
-TEST(MappingFile, MistakesHaveTheirPlace) {
+TEST(MappingFile, ErrorsStateTheLocation) {
   const auto refused = [](const std::string& text) {
     document::Problems problems;
     EXPECT_FALSE(parse_mapping("m.yaml", text, problems)) << text;

@@ -45,7 +45,7 @@ std::string file(const std::string& elements) {
 constexpr std::uint32_t cell = 1, structure = 2, numbers = 6;
 const std::string small_array = array(numbers, element(9, std::string(80, 'x')));
 
-TEST(MatElements, OrdinaryFilesAreWithin) {
+TEST(MatElements, OrdinaryFilesAreWithinTheLimits) {
   const std::string run =
       array(structure, element(5, word(8)) + element(1, "tip") + small_array + small_array);
   for (const std::string& elements :
@@ -68,7 +68,7 @@ TEST(MatElements, MillionsOfEmptyCellsInAFewKilobytesAreRefused) {
   EXPECT_FALSE(mat_elements_within(bomb, 100'000, std::size_t{1} << 30U));
 }
 
-TEST(MatElements, BytesAreBounded) {
+TEST(MatElements, TotalBytesAreLimited) {
   const std::string texts = compressed(array(cell, array(4, element(4, std::string(5000, 'x')))));
   EXPECT_TRUE(mat_elements_within(file(texts), 100, 10'000));
   EXPECT_FALSE(mat_elements_within(file(texts + texts), 100, 10'000));
@@ -80,7 +80,7 @@ TEST(MatElements, ArraysOfNumbersAreNotCounted) {
   EXPECT_TRUE(mat_elements_within(file(many), 100, std::size_t{1} << 20U));
 }
 
-TEST(MatElements, BrokenFilesAreReadAsFarAsTheyGo) {
+TEST(MatElements, TruncatedOrCorruptFilesDoNotCrash) {
   const std::string good = file(compressed(array(cell, small_array)) + array(structure, small_array));
   for (std::size_t size = 0; size < good.size(); ++size) {
     std::string broken = good.substr(0, size);

@@ -96,7 +96,7 @@ const std::vector<double>& column(const ForeignTable& table, const std::string& 
   return index < table.columns.size() ? table.columns[index].values : none;
 }
 
-TEST(ByteScanner, GivesNothingBehindTheEnd) {
+TEST(ByteScanner, ReturnsNoDataBeyondTheEnd) {
   ByteScanner scan(std::string_view("\x02\0\0\0ab\x07", 7));
   EXPECT_EQ(scan.text(), "ab");
   EXPECT_EQ(scan.rest().size(), 1U);
@@ -126,7 +126,7 @@ TEST(McapTable, TakesTheMessagesOfOneTopic) {
   }
 }
 
-TEST(McapTable, NamesWhatItDoesNotRead) {
+TEST(McapTable, ReportsSkippedTopicsAndValues) {
   const ForeignTable table =
       table_of(whole(topic(1, "/signals") + topic(2, "/imu", "cdr") + message(2, 1, "xyz") +
                      message(1, 1'000'000'000'000'000'500, R"({"tip_mm":"stuck","raw":[1,2]})") +
@@ -151,7 +151,7 @@ TEST(McapTable, ReadsTheCompleteMessagesOfAFileThatIsCutOff) {
   }
 }
 
-TEST(McapTable, RefusesWhatItCannotRead) {
+TEST(McapTable, RefusesUnsupportedOrInvalidFiles) {
   EXPECT_TRUE(
       says(refusal(whole(chunk(two_fingers(), "zstd"))), "the chunks of the file are compressed with zstd"));
   EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "", 1))), "a chunk does not match its checksum"));
@@ -174,7 +174,7 @@ TEST(McapTable, RefusesWhatItCannotRead) {
 }
 
 /// If bytes of the file are missing or changed, the reader must refuse the file or return a table.
-TEST(McapTable, SurvivesDamage) {
+TEST(McapTable, DamagedFileGivesATableOrAnError) {
   const std::string good = whole(two_fingers() + chunk(two_fingers()));
   std::mt19937 random(11);
   for (std::size_t i = 0; i < 20 * good.size(); ++i) {

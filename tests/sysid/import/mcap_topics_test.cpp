@@ -37,7 +37,7 @@ McapMessages signals() {
   return messages;
 }
 
-TEST(McapTopics, OfSignalsDescribeAFingerOnlyTogether) {
+TEST(McapTopics, SignalTopicsDescribeAFingerOnlyTogether) {
   EXPECT_TRUE(has_topics_of_signals(signals()));
   McapMessages fingers;
   for (const char* name : {"left", "right"}) {
@@ -50,7 +50,7 @@ TEST(McapTopics, OfSignalsDescribeAFingerOnlyTogether) {
   EXPECT_FALSE(has_topics_of_signals(one));
 }
 
-TEST(McapTopics, OfSignalsAreMergedByTheTimeOfTheRecording) {
+TEST(McapTopics, SignalTopicsAreMergedByRecordingTime) {
   McapMessages messages = signals();
   ForeignTable table;
   EXPECT_FALSE(merge_signals(messages, table));
@@ -65,7 +65,7 @@ TEST(McapTopics, OfSignalsAreMergedByTheTimeOfTheRecording) {
   EXPECT_EQ(table.columns[2].values[3], 2);
 }
 
-TEST(McapTopics, OfSignalsWithTwoClocksCannotBeMerged) {
+TEST(McapTopics, SignalTopicsWithTwoClocksAreNotMerged) {
   McapMessages messages = signals();
   messages.topics[0].columns.push_back(column("time_s", {0, 2}));
   messages.topics[1].columns.push_back(column("time_s", {101, 103}));
@@ -76,7 +76,7 @@ TEST(McapTopics, OfSignalsWithTwoClocksCannotBeMerged) {
       << problem->message;
 }
 
-TEST(McapTopics, OfFingersShareTheColumnsOfTheTable) {
+TEST(McapTopics, FingerTopicsShareTheTableColumns) {
   McapMessages messages;
   messages.topics = {topic("left", {column("pressure", {1, 2})}, {0, 2}),
                      topic("right", {column("pressure", {3, 4})}, {1, 3})};

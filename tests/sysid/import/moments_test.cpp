@@ -28,14 +28,14 @@ TEST(Moments, KeepNanoseconds) {
   EXPECT_EQ(moment->time % ns_per_s, 123456789);
 }
 
-TEST(Moments, OfTheDayAloneHaveNoDate) {
+TEST(Moments, TimeOfDayIsReadWithoutADate) {
   const auto moment = moment_of("23:59:59.5");
   ASSERT_TRUE(moment);
   EXPECT_FALSE(moment->dated);
   EXPECT_DOUBLE_EQ(seconds(moment->time), 86399.5);
 }
 
-TEST(Moments, OfTheDayHaveManySpellings) {
+TEST(Moments, TimeOfDayIsReadInSeveralNotations) {
   EXPECT_DOUBLE_EQ(seconds_of("12:59:50.5 PM"), 46790.5);
   EXPECT_DOUBLE_EQ(seconds_of("12:00:01 am"), 1);
   EXPECT_DOUBLE_EQ(seconds_of("1:00:00.25 p.m."), 46800.25);
@@ -43,7 +43,7 @@ TEST(Moments, OfTheDayHaveManySpellings) {
   EXPECT_DOUBLE_EQ(seconds_of("2024-05-31 12:00:00:250"), 1717156800.25);
 }
 
-TEST(Moments, MonthsMayHaveNames) {
+TEST(Moments, MonthNamesAreAccepted) {
   for (const char* text :
        {"31-May-2024 12:00:00", "31 May 2024 12:00:00", "31. Mai 2024 12:00:00", "May 31, 2024 12:00:00 PM",
         "2024-May-31 12:00:00", "31/may/2024 12:00:00", "May 31, 2024, 12:00:00"})
@@ -61,7 +61,7 @@ TEST(Moments, TwoFieldsAreMinutesAndSeconds) {
   EXPECT_FALSE(moment_of("12:34:56")->short_clock);
 }
 
-TEST(Moments, AreNotGuessed) {
+TEST(Moments, AmbiguousOrInvalidTextsAreRejected) {
   for (const char* text : {"05/31/2024 12:00:00", "2024-02-30 12:00:00", "25:00:00", "12:61", "2024-05-31",
                            "12", "1.5", "2024-05-31T12:00:00Zulu", "13:00:00 pm", "12:00:00:25",
                            "31-Foo-2024 12:00:00", "", "T", "::", "2024-13-01T00:00:00"})

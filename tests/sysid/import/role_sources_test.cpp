@@ -31,7 +31,7 @@ Mapping mapping(const std::string& displacement) {
   return made;
 }
 
-TEST(RoleSources, AreColumnsWithTheConversionOfTheirUnits) {
+TEST(RoleSources, ColumnsHaveTheFactorOfTheUnit) {
   document::Problems problems;
   const RoleSources sources = resolve_sources(table(), mapping("x"), problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
@@ -43,13 +43,13 @@ TEST(RoleSources, AreColumnsWithTheConversionOfTheirUnits) {
   EXPECT_FALSE(sources.uses(3));
 }
 
-TEST(RoleSources, NeedAUnit) {
+TEST(RoleSources, ColumnWithoutAUnitIsRefused) {
   document::Problems problems;
   static_cast<void>(resolve_sources(table(), mapping("y"), problems));
   EXPECT_NE(problems.format().find("displacement: 'y' has no unit"), std::string::npos) << problems.format();
 }
 
-TEST(RoleSources, OfAScaleCanBeInAnAngle) {
+TEST(RoleSources, ScaledDisplacementCanBeAnAngle) {
   ColumnMapping mapped;
   mapped.columns = {"x"};
   mapped.scale = 2;

@@ -41,7 +41,7 @@ TEST(SplitTimes, SecondsAndNanosecondsOfOneNameAreOneTime) {
   }
 }
 
-TEST(SplitTimes, OtherNamesAndValuesAreNot) {
+TEST(SplitTimes, OtherNamesOrValuesAreNotCombined) {
   const std::vector<double> whole{7, 7, 8};
   const std::vector<double> rest{0, 5e8, 2.5e8};
   for (const auto& [seconds, nanoseconds] :
@@ -57,7 +57,7 @@ TEST(SplitTimes, OtherNamesAndValuesAreNot) {
   }
 }
 
-TEST(SplitTimes, ATimeOfWhichAPartIsMissingIsMissing) {
+TEST(SplitTimes, TimeWithAMissingPartIsMissing) {
   const double none = std::nan("");
   bool is_one_time = false;
   const auto values = combined(column("sec", {7, none, 8}), column("nsec", {none, 5, 0}), is_one_time);

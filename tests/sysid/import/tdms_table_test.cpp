@@ -67,7 +67,7 @@ TEST(TdmsTable, ReadsNumbersByTheirTypes) {
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8}));
 }
 
-TEST(TdmsTable, MetadataHoldsUntilItChanges) {
+TEST(TdmsTable, MetadataApplyUntilChanged) {
   // The second segment has no metadata. The third segment changes the number of values of one channel. All
   // other metadata stay unchanged.
   const std::string values =
@@ -97,7 +97,7 @@ TEST(TdmsTable, ChangedMetadataKeepsTheOtherChannels) {
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11, 12}));
 }
 
-TEST(TdmsTable, RefusesWhatItCannotRead) {
+TEST(TdmsTable, RefusesUnsupportedOrInvalidSegments) {
   std::string bytes = two_channels();
   bytes[4] = static_cast<char>(bytes[4] | 64);
   EXPECT_NE(refusal(bytes).find("the segment at byte 0 is big-endian"), std::string::npos);
@@ -134,7 +134,7 @@ TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
             std::string::npos);
 }
 
-TEST(TdmsTable, NamesWhatItDoesNotSupport) {
+TEST(TdmsTable, ReportsUnsupportedTypesAndProperties) {
   const auto said = [](std::uint32_t objects, const std::string& inside) {
     return refusal(segment(2 | 4 | 8, number_of_objects(objects) + inside, "x"));
   };
@@ -163,7 +163,7 @@ TEST(TdmsTable, RefusesMoreValuesThanTheLimit) {
 }
 
 /// If bytes of the file are missing or changed, the reader must refuse the file or return a table.
-TEST(TdmsTable, SurvivesDamage) {
+TEST(TdmsTable, DamagedFileGivesATableOrAnError) {
   const std::string good = two_channels() + two_channels();
   std::mt19937 random(5);
   for (std::size_t i = 0; i < 20 * good.size(); ++i) {
@@ -175,7 +175,7 @@ TEST(TdmsTable, SurvivesDamage) {
   }
 }
 
-TEST(TdmsTable, BoundsTheWorkOfSmallFiles) {
+TEST(TdmsTable, LimitsTheWorkForSmallFiles) {
   std::string metadata = number_of_objects(5000);
   for (int i = 0; i < 5000; ++i) metadata += channel("/'g'/'" + std::to_string(i) + "'", 1, 0);
   metadata.replace(0, 4, number_of_objects(5001));

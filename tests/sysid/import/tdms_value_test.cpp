@@ -31,7 +31,7 @@ TEST(TdmsValue, ReadsEachTypeOfNumber) {
   EXPECT_EQ(number_of(TdmsType::boolean, std::uint8_t{7}), 1);
 }
 
-TEST(TdmsValue, OfATextOrAnUnknownTypeHasNoSize) {
+TEST(TdmsValue, TextAndUnknownTypesHaveNoSize) {
   EXPECT_EQ(size_of(TdmsType::string), 0U);
   EXPECT_EQ(size_of(static_cast<TdmsType>(99)), 0U);
 }

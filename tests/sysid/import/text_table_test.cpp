@@ -46,14 +46,14 @@ TEST(TextTable, PointsAndCommasInOneFileAreRefused) {
   EXPECT_NE(refusal("a,b\n0,5,1,5\n1,5,2,5\n").find("2 column names above 4 columns"), std::string::npos);
 }
 
-TEST(TextTable, UnitsStandBelowTheNames) {
+TEST(TextTable, UnitsAreReadFromTheLineBelowTheNames) {
   const ForeignTable table = table_of("time;p\n[ms];[psi]\n1;2\n3;4\n");
   EXPECT_EQ(table.columns[0].unit, "ms");
   EXPECT_EQ(table.columns[1].unit, "psi");
   EXPECT_EQ(table.columns[1].name, "p");
 }
 
-TEST(TextTable, CommentsAndLinesAboveTheNamesArePassedOver) {
+TEST(TextTable, CommentsAndTitleLinesAreSkipped) {
   const ForeignTable table = table_of("Report\nOperator: me\n# comment\n\nt,x\n0,1\n# more\n1,2\n");
   EXPECT_EQ(table.columns[1].name, "x");
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{1, 2}));
@@ -61,7 +61,7 @@ TEST(TextTable, CommentsAndLinesAboveTheNamesArePassedOver) {
   EXPECT_EQ(table.notes, std::vector<std::string>{"2 lines above the columns' names skipped"});
 }
 
-TEST(TextTable, NamesMayStandInACommentOrNowhere) {
+TEST(TextTable, ColumnNamesMayBeInACommentOrMissing) {
   EXPECT_EQ(table_of("# t x\n0 1\n1 2\n").columns[1].name, "x");
   const ForeignTable nameless = table_of("0,1\n1,2\n");
   EXPECT_EQ(nameless.columns[1].name, "");
@@ -69,51 +69,51 @@ TEST(TextTable, NamesMayStandInACommentOrNowhere) {
   EXPECT_EQ(word_of(nameless, 1), "2");
 }
 
-TEST(TextTable, WordsThatSayNothingAreNothing) {
+TEST(TextTable, MissingValueWordsAreReadAsNan) {
   const ForeignTable table = table_of("t,x\n0,NaN\n1,\n2,N/A\n3,-999\n4,inf\n5,7\n", {0, {"-999"}, {}});
   for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(table.columns[1].values[i])) << i;
   EXPECT_EQ(table.columns[1].values[5], 7);
   EXPECT_EQ(table.columns[1].bad_count, 0U);
 }
 
-TEST(TextTable, OtherWordsAreKeptWithTheirPlace) {
+TEST(TextTable, OtherWordsAreReportedWithTheLocation) {
   const ForeignTable table = table_of("t,x\n0,1\n1,oops\n2,3\n");
   ASSERT_EQ(table.columns[1].bad.size(), 1U);
   EXPECT_EQ(table.columns[1].bad[0].at, (document::Location{3, 3}));
   EXPECT_EQ(table.columns[1].bad[0].text, "oops");
 }
 
-TEST(TextTable, MidnightIsPassed) {
+TEST(TextTable, TimeOfDayContinuesPastMidnight) {
   const ForeignTable table = table_of("t,x\n23:59:59.5,1\n00:00:00.5,2\n00:00:01.5,3\n");
   EXPECT_EQ(table.columns[0].values, (std::vector<double>{0, 1, 2}));
   EXPECT_EQ(table.columns[0].moments, 3U);
 }
 
-TEST(TextTable, TheLastLineMayBeCutOffOthersMayNot) {
+TEST(TextTable, OnlyTheLastLineMayBeTruncated) {
   EXPECT_EQ(table_of("t,x\n0,1\n1,2\n2").notes.size(), 1U);
   EXPECT_NE(refusal("t,x\n0,1\n1\n2,3\n3,4\n").find("t.csv:3:1: 1 cells, but the rows above have 2"),
             std::string::npos);
 }
 
-TEST(TextTable, ChannelsAreToldApart) {
+TEST(TextTable, RowsAreSelectedByChannel) {
   const std::string text = "t,channel,x\n0,left,1\n0,right,2\n1,left,3\n1,right,4\n";
   EXPECT_EQ(table_of(text).channels, (std::vector<std::string>{"left", "right"}));
   EXPECT_EQ(table_of(text, {0, {}, "right"}).columns[2].values, (std::vector<double>{2, 4}));
 }
 
-TEST(TextTable, WhatIsNoTableIsRefused) {
+TEST(TextTable, TextWithoutATableIsRefused) {
   EXPECT_NE(refusal("").find("the file is empty"), std::string::npos);
   EXPECT_NE(refusal("hello\nworld\n").find("no rows of numbers"), std::string::npos);
   EXPECT_NE(refusal(std::string("a\0b", 3)).find("not a text"), std::string::npos);
 }
 
-TEST(CellValue, ThousandsAreNoNumbers) {
+TEST(CellValue, ThousandsSeparatorsAreRejected) {
   for (const char* cell : {"1.234,5", "1,234.5", "1,234,567", "1,", ",5x", "0x1p3z"})
     EXPECT_EQ(cell_value(cell, {}).kind, CellKind::text) << cell;
   EXPECT_EQ(cell_value(" \"-1,5e3\" ", {}).number, -1500);
 }
 
-TEST(TextEncoding, AllBecomeUtf8) {
+TEST(TextEncoding, EncodingsAreConvertedToUtf8) {
   EXPECT_EQ(utf8_of("\xef\xbb\xbf"
                     "a"),
             "a");
@@ -124,7 +124,7 @@ TEST(TextEncoding, AllBecomeUtf8) {
   EXPECT_EQ(utf8_of("1\r2\r"), "1\n2\n");
 }
 
-TEST(TextTable, MoreLinesThanTheBoundAreRefusedBeforeTheyAreSplit) {
+TEST(TextTable, TooManyLinesAreRefusedBeforeSplitting) {
   std::string text = "time_s,tip\n";
   text.reserve(text.size() + 4 * (most_rows + 1));
   for (std::size_t i = 0; i <= most_rows; ++i) text += "1,2\n";
@@ -134,7 +134,7 @@ TEST(TextTable, MoreLinesThanTheBoundAreRefusedBeforeTheyAreSplit) {
   EXPECT_EQ(problems.list().front().message, "the text has more than 16777216 lines");
 }
 
-TEST(TextTable, TheGivenSeparatorDecides) {
+TEST(TextTable, GivenSeparatorOverridesDetection) {
   const std::string text = "0,1;2,3\n0,2;2,4\n0,3;2,5\n";
   TableOptions options;
   options.separator = ',';
@@ -152,7 +152,7 @@ TEST(TextTable, RefusesALineThatIsTooLong) {
   EXPECT_EQ(problems.list().front().message, "line 3 has more than 1048576 bytes");
 }
 
-TEST(WholeNumber, IsDigitsAlone) {
+TEST(WholeNumber, AcceptsOnlyDecimalDigits) {
   EXPECT_EQ(whole_number("0"), 0U);
   EXPECT_EQ(whole_number("1048576"), 1048576U);
   for (const char* none : {"", "-1", "+1", "1.0", " 1", "1 ", "B7", "1e3", "99999999999999999999999"})

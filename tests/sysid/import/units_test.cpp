@@ -16,7 +16,7 @@ struct Case {
 
 class Units : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Units, ComeToTheUnitOfALog) {
+TEST_P(Units, AreConvertedToTheUnitOfALog) {
   const Case& c = GetParam();
   const auto unit = unit_named(c.text, c.quantity);
   ASSERT_TRUE(unit) << c.text;
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
              Quantity::temperature, 21, 21},
         Case{"K", Quantity::temperature, 293.15, 20}, Case{"deg F", Quantity::temperature, 212, 100}));
 
-TEST(Unit, OfAnotherQuantityOrUnknownIsNone) {
+TEST(Unit, UnknownOrMismatchedUnitsAreRejected) {
   EXPECT_FALSE(unit_named("psi", Quantity::displacement));
   EXPECT_FALSE(unit_named("V", Quantity::pressure));
   EXPECT_FALSE(unit_named("furlong"));
@@ -76,7 +76,7 @@ TEST(SplitUnit, FindsNameAndUnit) {
   is("M(:,2)", "M(:,2)", "");
 }
 
-TEST(SplitUnit, TakesNoWordForAUnitThatTheQuantityDoesNotSay) {
+TEST(SplitUnit, AcceptsOnlyUnitsOfTheQuantity) {
   EXPECT_EQ(split_unit("p_in").unit, "");
   EXPECT_EQ(split_unit("p_in", Quantity::pressure).unit, "");
   EXPECT_EQ(split_unit("tip_in", Quantity::displacement).unit, "in");

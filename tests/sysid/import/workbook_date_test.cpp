@@ -7,7 +7,7 @@
 namespace softgrip::sysid::workbook_date_test {
 namespace {
 
-TEST(WorkbookDate, DatesAreToldByTheirFormat) {
+TEST(WorkbookDate, DatesAreRecognisedByFormatCode) {
   for (const char* code :
        {"yyyy-mm-dd", "hh:mm:ss.000", "[h]:mm:ss", "d. mmmm yy", "[$-407]d/m/yy", "mm:ss.0"})
     EXPECT_TRUE(is_date_format(std::string_view(code))) << code;

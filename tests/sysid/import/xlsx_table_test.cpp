@@ -113,7 +113,7 @@ void expect_same(const ForeignTable& left, const ForeignTable& right) {
   }
 }
 
-TEST(XlsxTable, GivesWhatCsvWithTheSameCellsGives) {
+TEST(XlsxTable, EqualsACsvFileWithTheSameCells) {
   std::mt19937 random(7);
   const auto below = [&](std::size_t end) {
     return std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
@@ -151,7 +151,7 @@ TEST(XlsxTable, GivesWhatCsvWithTheSameCellsGives) {
   }
 }
 
-TEST(XlsxTable, AsksWhichOfSeveralSheetsAndNamesTheOthers) {
+TEST(XlsxTable, RequiresASheetNameForSeveralSheets) {
   const Parts parts = book(
       {{"Monday", cells(three_rows)}, {"Notes", cells({{"mass", "2"}})}, {"Tuesday", cells(three_rows)}});
   const std::string said = refusal(parts);
@@ -171,7 +171,7 @@ TEST(XlsxTable, AsksWhichOfSeveralSheetsAndNamesTheOthers) {
                   "sheet 'Notes' is skipped, because this sheet does not have two rows of numbers"));
 }
 
-TEST(XlsxTable, NamesWhatIsMissing) {
+TEST(XlsxTable, ReportsMissingCellsAndFormulas) {
   std::string inside = cells(three_rows, 1, 1);
   const auto replace = [&](const std::string& old, const std::string& now) {
     ASSERT_TRUE(has(inside, old)) << old;
@@ -193,7 +193,7 @@ TEST(XlsxTable, NamesWhatIsMissing) {
     EXPECT_TRUE(has(notes, said)) << said << "\n" << notes;
 }
 
-TEST(XlsxTable, AWordInAColumnOfNumbersHasItsCell) {
+TEST(XlsxTable, WordInANumericColumnIsReportedWithTheCell) {
   Rows rows = three_rows;
   rows[2][2] = "stuck";
   const ForeignTable table = table_of(book({{"Run", cells(rows, 4, 1)}}));
@@ -202,7 +202,7 @@ TEST(XlsxTable, AWordInAColumnOfNumbersHasItsCell) {
   EXPECT_EQ(table.columns[2].bad[0].at.line, 6);
 }
 
-TEST(XlsxTable, RefusesACellThatContradictsTheFile) {
+TEST(XlsxTable, RefusesInconsistentCellsAndRows) {
   const auto said = [](const std::string& cell) {
     return refusal(book({{"Run", "<sheetData><row r='7'>" + cell + "</row></sheetData>"}}));
   };
@@ -235,7 +235,7 @@ TEST(XlsxTable, RefusesASecondPartOfTextsOrStyles) {
   }
 }
 
-TEST(XlsxTable, RefusesWhatIsNoWorkbook) {
+TEST(XlsxTable, RefusesFilesThatAreNoWorkbook) {
   EXPECT_TRUE(has(refusal(Parts{{"content.xml", "x"}}), "OpenDocument"));
   EXPECT_TRUE(has(refusal(Parts{{"a.txt", "x"}}), "an archive, not a workbook"));
   Parts parts = book({{"Run", cells(three_rows)}});
@@ -246,7 +246,7 @@ TEST(XlsxTable, RefusesWhatIsNoWorkbook) {
 }
 
 /// If bytes of the file are missing or changed, the reader must refuse the file or return the original table.
-TEST(XlsxTable, SurvivesDamage) {
+TEST(XlsxTable, DamagedFileGivesTheOriginalTableOrAnError) {
   const std::string good = archive(book({{"Run", cells(three_rows)}}));
   std::mt19937 random(3);
   std::size_t refused = 0;
@@ -293,7 +293,7 @@ TEST(WorkbookXml, CountsTheTextsBetweenElements) {
   EXPECT_FALSE(load_xml(text, document));
 }
 
-TEST(WorkbookPackage, BoundsWhatIsUnpacked) {
+TEST(WorkbookPackage, LimitsTheDecompressedSize) {
   const std::string bytes = archive({{"zeros", std::string(std::size_t{200} << 20U, '0')}});
   EXPECT_LT(bytes.size(), std::size_t{1} << 20U);
   auto package = WorkbookPackage::open(bytes);
@@ -327,7 +327,7 @@ TEST(WorkbookSheet, DatesCountFrom1900Or1904) {
   EXPECT_TRUE(sheet_text(document, texts)->text.starts_with("2028-06-01T12:00:00"));
 }
 
-TEST(WorkbookSheet, BoundsTheSharedTextsOfItsCells) {
+TEST(WorkbookSheet, LimitsTheSizeOfSharedTexts) {
   std::string xml = "<worksheet><sheetData><row>";
   for (int i = 0; i < 40; ++i) xml += "<c t='s'><v>0</v></c>";
   xml += "</row></sheetData></worksheet>";

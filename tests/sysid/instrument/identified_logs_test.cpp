@@ -25,7 +25,7 @@ IdentifyQuestion question() {
   return all;
 }
 
-TEST(IdentifiedLogs, AWrongReadingIsNotFittedAndIsTheFirstWarning) {
+TEST(IdentifiedLogs, OutlierIsNotFittedAndIsTheFirstWarning) {
   const auto all = identify_logs(question());
   ASSERT_TRUE(all) << all.error();
   EXPECT_TRUE(std::isnan(all->logs.front().displacement_mm[100]));
@@ -50,7 +50,7 @@ TEST(IdentifiedLogs, ValidationLogsAreCleanedAndPredicted) {
   EXPECT_EQ(all->report({}).validation_logs, &all->validation_logs);
 }
 
-TEST(IdentifiedLogs, WithoutAStartTheStructureIsTheBase) {
+TEST(IdentifiedLogs, BaseStructureIsUsedWithoutAStartModel) {
   IdentifyQuestion asked = question();
   asked.start.reset();
   asked.branches = 1;

@@ -32,7 +32,7 @@ Log begun_at_a_step(double idle_kpa, double offset_kpa = 0) {
   return log;
 }
 
-TEST(CommandBefore, IsWhereTheMeasuredPressureStillWas) {
+TEST(CommandBefore, IsEstimatedFromTheFirstMeasuredPressure) {
   const Log log = begun_at_a_step(7);
   const auto before_kpa = pressure_before_kpa(log);
   ASSERT_TRUE(before_kpa);
@@ -51,7 +51,7 @@ TEST(CommandBefore, IsACommandThatTheLogContains) {
   EXPECT_EQ(*before_kpa, 0) << "the log contains only the commands 0 and 60 kPa after the first hold";
 }
 
-TEST(CommandBefore, ALogThatBeginsAtRestHasNone) {
+TEST(CommandBefore, LogThatBeginsAtRestHasNoEarlierCommand) {
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60)));
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(58)))
       << "a difference of 2 kPa may be an error of the regulator";
@@ -65,7 +65,7 @@ Log unmeasured(Log log) {
   return log;
 }
 
-TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCame) {
+TEST(CommandBefore, DisplacementSelectsTheLowestOrHighestCommand) {
   const auto [least, most] = std::pair{20.0, 60.0};  // lowest and highest command of the cosine [kPa]
   const auto risen = pressure_before_kpa(unmeasured(begun_at_a_step(7)));
   ASSERT_TRUE(risen);
@@ -81,7 +81,7 @@ TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCam
   EXPECT_NEAR(*fallen, most, 0.1);
 }
 
-TEST(CommandBefore, WithoutMeasuredPressureALogThatShowsNoStepHasNone) {
+TEST(CommandBefore, UnclearDisplacementGivesNoEarlierCommand) {
   EXPECT_FALSE(pressure_before_kpa(unmeasured(begun_at_a_step(60))))
       << "the finger is at rest at the start of the log, so no sample must be added";
   Log creeping = unmeasured(begun_at_a_step(60));
@@ -101,19 +101,19 @@ TEST(CommandBefore, WithoutMeasuredPressureALogThatShowsNoStepHasNone) {
   EXPECT_FALSE(pressure_before_kpa(unread));
 }
 
-TEST(CommandBefore, APressureWithAnotherZeroIsNotOnItsWay) {
+TEST(CommandBefore, OffsetOfThePressureSensorIsNoTransient) {
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60, 25)));
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60, -25)));
 }
 
-TEST(CommandBefore, OnlyTheHoldOfTheFirstCommandCounts) {
+TEST(CommandBefore, FirstCommandOfOneSampleGivesNoEarlierCommand) {
   Log log = begun_at_a_step(7);
   for (std::size_t i = 1; i < log.size(); ++i) log.pressure_command_kpa[i] = i < 100 ? 10 : 60;
   EXPECT_FALSE(pressure_before_kpa(log))
       << "the command was 60 kPa for only one sample, so the pressure did not reach 60 kPa";
 }
 
-TEST(CommandBefore, IsASampleWithoutReadings) {
+TEST(CommandBefore, IsAddedAsASampleWithoutReadings) {
   const Log log = begun_at_a_step(7);
   const Log longer = with_command_before(log, 7);
   ASSERT_EQ(longer.size(), log.size() + 1);

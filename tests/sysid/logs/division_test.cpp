@@ -71,7 +71,7 @@ TEST(Division, NeighbouringBlocksAreNotHeldOutTogether) {
   }
 }
 
-TEST(Division, OfHalvesFitsTheFirstAndJudgesTheSecond) {
+TEST(Division, HalvesFitTheFirstAndTestTheSecondHalf) {
   const std::vector<Record> records{of_length(33, 100), of_length(20, 60)};
   const Division halves = divide_into_halves(records);
   ASSERT_EQ(halves.folds, 1U);
@@ -86,7 +86,7 @@ TEST(Division, OfHalvesFitsTheFirstAndJudgesTheSecond) {
   EXPECT_EQ(judged, 0U);
 }
 
-TEST(Division, AFirstShareOfReadingsIsLeft) {
+TEST(Division, FirstShareOfReadingsIsKept) {
   const std::vector<Record> records{of_length(10, 100)};
   EXPECT_EQ(with_first_readings(records, 1).front().readings, records.front().readings);
   const Record first = with_first_readings(records, 0.3).front();
@@ -95,7 +95,7 @@ TEST(Division, AFirstShareOfReadingsIsLeft) {
   EXPECT_TRUE(std::isnan(first.reading_mm[300]));
 }
 
-TEST(ThinnedDivision, HasTheSameStretchesOfTime) {
+TEST(ThinnedDivision, HasTheSameTimeBlocks) {
   const std::vector<Record> records{of_length(33, 100), of_length(20, 60)};
   std::vector<Record> thinned;
   for (const Record& record : records) thinned.push_back(thinned_record(record, 3));

@@ -23,7 +23,7 @@ Record record_of(std::size_t samples) {
   return record;
 }
 
-TEST(EachRecord, GetsItsWorkOnce) {
+TEST(EachRecord, EachRecordIsProcessedOnce) {
   const ThreadBudget budget(3);
   for (const std::size_t samples : {std::size_t{1}, samples_worth_a_thread}) {
     const std::vector<Record> records(5, record_of(samples));
@@ -33,7 +33,7 @@ TEST(EachRecord, GetsItsWorkOnce) {
   }
 }
 
-TEST(EachRecord, OfAFewSamplesIsNotWorthAThread) {
+TEST(EachRecord, ShortRecordsUseTheCallingThread) {
   const ThreadBudget budget(3);
   const std::vector<Record> records(5, record_of(samples_worth_a_thread - 1));
   EXPECT_FALSE(are_worth_threads(records));

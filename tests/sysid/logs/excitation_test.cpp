@@ -30,14 +30,14 @@ double triangle(double t, double peak_kpa) {
   return peak_kpa * std::max(0.0, 1 - std::abs(std::fmod(t, 10) / 4 - 1));
 }
 
-TEST(MissingExcitation, OfALogThatOnlyLoads) {
+TEST(MissingExcitation, LoadingOnlyLogLacksUnloading) {
   EXPECT_EQ(missing_excitation({commanded([](double t) { return 1.2 * t; })}),
             (Missing{Excitation::unloading, Excitation::rest}));
   EXPECT_EQ(missing_excitation({commanded([](double t) { return t < 5 ? 0 : 20 * std::log(1 + t - 5); })}),
             Missing{Excitation::unloading});
 }
 
-TEST(MissingExcitation, OfOneAmplitude) {
+TEST(MissingExcitation, RepeatedEqualPeaksLackAmplitudes) {
   EXPECT_EQ(missing_excitation({commanded([](double t) { return triangle(t, 40); })}),
             (Missing{Excitation::rest, Excitation::amplitudes}));
   EXPECT_EQ(missing_excitation({commanded([](double t) { return t < 4 ? 0 : 20 - 20 * std::cos(t - 4); })}),
@@ -46,7 +46,7 @@ TEST(MissingExcitation, OfOneAmplitude) {
 
 /// Between two steps of this command, the pressure does not fall. The steps must therefore not be counted as
 /// peaks.
-TEST(MissingExcitation, OfAStaircaseWithOnePeak) {
+TEST(MissingExcitation, StaircaseStepsAreNotCountedAsPeaks) {
   const auto stairs = [](double t) { return 8 * std::floor(std::max(0.0, 20 - std::abs(t - 20)) / 4); };
   EXPECT_EQ(missing_excitation({commanded(stairs)}), Missing{Excitation::amplitudes});
   const auto jitter = [&](double t) { return stairs(t) + 0.5 * std::sin(40 * t); };
@@ -54,7 +54,7 @@ TEST(MissingExcitation, OfAStaircaseWithOnePeak) {
   EXPECT_EQ(std::count(missing.begin(), missing.end(), Excitation::amplitudes), 1);
 }
 
-TEST(MissingExcitation, OtherLogsMayContainIt) {
+TEST(MissingExcitation, LogsTogetherProvideMissingExcitation) {
   const Log ramp = commanded([](double t) { return t < 4 ? 0 : t - 4; });
   const Log triangles = commanded([](double t) { return triangle(t, t < 10 ? 20 : 40); });
   EXPECT_EQ(missing_excitation({triangles}), Missing{Excitation::rest});
@@ -62,7 +62,7 @@ TEST(MissingExcitation, OtherLogsMayContainIt) {
 }
 
 /// A vacuum loads this finger, so the pressure falls during loading.
-TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
+TEST(MissingExcitation, VacuumIsTreatedLikePressure) {
   for (const double peak_kpa : {-40.0, 40.0}) {
     EXPECT_EQ(missing_excitation({commanded([&](double t) { return peak_kpa * t / 40; })}),
               (Missing{Excitation::unloading, Excitation::rest}))
@@ -75,7 +75,7 @@ TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
   }
 }
 
-TEST(MissingExcitation, HasASentence) {
+TEST(MissingExcitation, EachKindHasASentence) {
   EXPECT_EQ(without(Excitation::unloading),
             "the logs contain no unloading (decrease of the pressure), so hysteresis cannot be determined");
   EXPECT_EQ(without(Excitation::rest),
@@ -89,29 +89,29 @@ TEST(MissingExcitation, HasASentence) {
 using Indices = std::vector<std::size_t>;
 using Values = std::vector<double>;
 
-TEST(TurningPoints, AreWhereASignalGoesBackFarEnough) {
+TEST(TurningPoints, AreReversalsAboveTheThreshold) {
   const Values values{0, 3, 2.6, 5, 1, 1.3, 0.5, 4};
   EXPECT_EQ(turning_points(values, 1), (Indices{0, 3, 6, 7}));
   EXPECT_EQ(turning_points(values, 0.35), (Indices{0, 1, 2, 3, 6, 7}));
   EXPECT_EQ(turning_points(values, 10), (Indices{0, 7}));
 }
 
-TEST(TurningPoints, TheFirstWayMayGoDown) {
+TEST(TurningPoints, FirstMotionMayBeDecreasing) {
   EXPECT_EQ(turning_points({5, 5.2, 1, 4}, 1), (Indices{0, 1, 2, 3}));
   EXPECT_EQ(turning_points({5, 4, 1, 4}, 1), (Indices{0, 2, 3}));
 }
 
-TEST(TurningPoints, OneValueIsOne) {
+TEST(TurningPoints, SingleValueIsATurningPoint) {
   EXPECT_EQ(turning_points({7}, 1), Indices{0});
 }
 
-TEST(SteadyBetweenTurns, RisesAndFallsAndKeepsItsTurns) {
+TEST(SteadyBetweenTurns, OutputIsMonotonicBetweenTurningPoints) {
   const Values values{0, 3, 2.6, 5, 1, 1.3, 0.5, 4};
   const Values steady = steady_between_turns(values, 1);
   EXPECT_EQ(steady, (Values{0, 2.8, 2.8, 5, 1.15, 1.15, 0.5, 4}));
 }
 
-TEST(SteadyBetweenTurns, AHoldIsTheMeanOfWhatWavers) {
+TEST(SteadyBetweenTurns, NoisyHoldIsReplacedByTheMean) {
   Values values(10, 0.0);
   for (int i = 0; i < 100; ++i) values.push_back(20 + (i % 2 == 0 ? 0.1 : -0.1));
   const Values steady = steady_between_turns(values, 1);
@@ -119,7 +119,7 @@ TEST(SteadyBetweenTurns, AHoldIsTheMeanOfWhatWavers) {
   EXPECT_NEAR(steady[60], 20, 0.01);
 }
 
-TEST(SteadyBetweenTurns, WhatIsSteadyStaysAsItIs) {
+TEST(SteadyBetweenTurns, MonotonicValuesStayUnchanged) {
   const Values values{4, 2, 2, 1, 3, 8, 9};
   EXPECT_EQ(steady_between_turns(values, 0.5), values);
 }

@@ -40,7 +40,7 @@ TEST(InputSmoothing, FindsTheNoiseOfASignal) {
   }
 }
 
-TEST(InputSmoothing, TakesMostOfTheNoiseAwayAndKeepsTheCorners) {
+TEST(InputSmoothing, RemovesMostNoiseAndKeepsCorners) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Signal s = triangles(0.3, seed);
     const std::vector<double> smooth = smoothed(s.time_s, s.measured, white_noise_of(s.time_s, s.measured));
@@ -70,14 +70,14 @@ double total_variation(const std::vector<double>& values) {
   return sum;
 }
 
-TEST(InputSmoothing, ASignalThatJumpsIsSmoothBetweenItsJumps) {
+TEST(InputSmoothing, StepSignalIsSmoothBetweenSteps) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     Signal s = jumps(0.05, seed);
     EXPECT_LT(rms(smoothed(s.time_s, s.measured, 0.05), s.truth), 0.02) << "seed " << seed;
   }
 }
 
-TEST(InputSmoothing, NoHysteresisTurnsOnWhatIsLeftOfTheNoise) {
+TEST(InputSmoothing, SmoothedSignalHasTheTrueTotalVariation) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     Signal jumping = jumps(0.05, seed), slow = triangles(0.3, seed);
     for (Signal* const s : {&jumping, &slow}) {
@@ -102,7 +102,7 @@ TEST(InputSmoothing, HasNoDelay) {
       << "at 10 kPa/s a delay of 1 ms would separate the branches by 0.02 kPa";
 }
 
-TEST(InputSmoothing, AnswersDoNotDependOnTheUnit) {
+TEST(InputSmoothing, ResultIsIndependentOfTheUnit) {
   Signal s = triangles(0.3, 6);
   const std::vector<double> one = smoothed(s.time_s, s.measured, 0.3);
   for (double& v : s.measured) v *= 1000;
@@ -110,7 +110,7 @@ TEST(InputSmoothing, AnswersDoNotDependOnTheUnit) {
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(other[i], 1000 * one[i], 1e-3);
 }
 
-TEST(InputSmoothing, BridgesWhatWasNotMeasured) {
+TEST(InputSmoothing, InterpolatesMissingSamples) {
   Signal s = triangles(0.1, 7);
   for (std::size_t i = 100; i < 130; ++i) s.measured[i] = std::nan("");
   s.measured.front() = std::nan("");
@@ -118,7 +118,7 @@ TEST(InputSmoothing, BridgesWhatWasNotMeasured) {
   for (std::size_t i = 100; i < 130; ++i) EXPECT_NEAR(smooth[i], s.truth[i], 0.3);
 }
 
-TEST(InputSmoothing, LeavesAColumnWithoutNoiseAsItIs) {
+TEST(InputSmoothing, LeavesANoiseFreeColumnUnchanged) {
   Signal s = triangles(0, 8);
   EXPECT_EQ(smooth_input(s.time_s, s.measured), 0);
   EXPECT_EQ(s.measured, s.truth);

@@ -142,7 +142,7 @@ std::vector<Bad> bad_logs() {
 
 class BadLog : public ::testing::TestWithParam<Bad> {};
 
-TEST_P(BadLog, IsRefusedWithItsPlace) {
+TEST_P(BadLog, IsRefusedWithFileLineAndColumn) {
   const Bad& bad = GetParam();
   Problems problems;
   EXPECT_FALSE(parse_log("bad.csv", bad.text, problems, bad.options));
@@ -158,7 +158,7 @@ TEST_P(BadLog, IsRefusedWithItsPlace) {
 INSTANTIATE_TEST_SUITE_P(Kinds, BadLog, testing::ValuesIn(bad_logs()),
                          [](const auto& bad) { return bad.param.name; });
 
-TEST(Log, AGoodOneIsRead) {
+TEST(Log, ValidLogIsReadWithoutNotes) {
   Problems problems;
   const auto log = parse_log("dir/good.csv", good_text(), problems);
   ASSERT_TRUE(log) << problems.format();
@@ -169,14 +169,14 @@ TEST(Log, AGoodOneIsRead) {
   EXPECT_TRUE(log->notes.empty()) << log->notes.front().text;
 }
 
-TEST(Log, OfASlowProcessIsRead) {
+TEST(Log, LogOfASlowProcessIsRead) {
   Log slow = good_log();
   for (double& t : slow.time_s) t *= 6000;
   document::Problems problems;
   EXPECT_TRUE(parse_log("slow.csv", format_log(slow), problems));
 }
 
-TEST(Log, TextAndBackLosesNothing) {
+TEST(Log, FormattedLogIsParsedWithoutLoss) {
   Log log = good_log();
   log.time_s[1] = 0.1 / 3 * 0.2;
   log.temperature_c.assign(100, 1.0 / 3);
@@ -203,7 +203,7 @@ std::string with_readings_called(const std::string& name, std::string text) {
   return text.replace(text.find(usual), usual.size(), name);
 }
 
-TEST(Log, AnAngleInDegreesIsReadAsItStands) {
+TEST(Log, AngleInDegreesIsReadWithoutConversion) {
   Problems problems;
   const auto log = parse_log("a.csv", with_readings_called("angle_deg", good_text()), problems);
   ASSERT_TRUE(log) << problems.format();
@@ -235,7 +235,7 @@ TEST(Log, AnAngleTooLargeForDegreesIsRefused) {
   EXPECT_NE(problems.format().find("a bending angle of 1e+308 deg"), std::string::npos) << problems.format();
 }
 
-TEST(Log, BesideADisplacementAnAngleIsAnotherColumn) {
+TEST(Log, AngleColumnIsSecondaryNextToADisplacement) {
   Problems problems;
   Log log = good_log();
   log.others.push_back({"angle_deg", std::vector<std::string>(log.size(), "7")});
@@ -257,7 +257,7 @@ TEST(Log, MessagesOfAnAngleSayDegrees) {
   EXPECT_NE(problems.format().find("'angle_deg' or 'angle_rad'"), std::string::npos) << problems.format();
 }
 
-TEST(Log, ReadingsInAnotherUnitThanAskedForAreRefusedAtTheirColumn) {
+TEST(Log, ReadingsInAnUnexpectedUnitAreRefused) {
   Problems problems;
   LogOptions options;
   options.output_unit = model::OutputUnit::deg;
@@ -270,7 +270,7 @@ TEST(Log, ReadingsInAnotherUnitThanAskedForAreRefusedAtTheirColumn) {
             "column 'displacement_mm' gives readings in mm, and the model finger is in deg");
 }
 
-TEST(Log, AcceptsWhatSpreadsheetsWrite) {
+TEST(Log, AcceptsAByteOrderMarkAndCrlfLines) {
   std::string text = "\xef\xbb\xbf" + good_text();
   for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2))
     text.insert(at, "\r");
@@ -291,7 +291,7 @@ std::string with_column(const std::string& name, const std::string& cell,
   return text;
 }
 
-TEST(Log, QuotesInsideACellComeBackAsTheyWere) {
+TEST(Log, QuotedCellsAreWrittenBackUnchanged) {
   const std::string text =
       with_column(R"("note, by ""hand""")", R"("said ""stop"", left")", {{3, R"(a "b" c)"}, {4, R"(" x")"}});
   Problems problems;
@@ -307,7 +307,7 @@ TEST(Log, QuotesInsideACellComeBackAsTheyWere) {
   EXPECT_EQ(copy->others, log->others);
 }
 
-TEST(Log, AQuoteThatIsNotClosedIsNamedAndAtTheEndLeftOut) {
+TEST(Log, UnclosedQuoteIsAnErrorExceptInTheLastRow) {
   Problems problems;
   EXPECT_FALSE(parse_log("a.csv", with_column("note", "b", {{3, "\"b"}}), problems));
   EXPECT_NE(problems.format().find("a.csv:3:1"), std::string::npos) << problems.format();
@@ -318,7 +318,7 @@ TEST(Log, AQuoteThatIsNotClosedIsNamedAndAtTheEndLeftOut) {
   EXPECT_EQ(cut->size(), 99U);
 }
 
-TEST(Log, ARowCutOffByAKillIsLeftOutAndNoted) {
+TEST(Log, TruncatedLastRowIsOmittedWithANote) {
   const std::string text = good_text();
   Problems problems;
   const auto log = parse_log("good.csv", text.substr(0, text.rfind(',')), problems);
@@ -379,7 +379,7 @@ TEST(Log, AChannelIsTakenOutOfARecording) {
   EXPECT_DOUBLE_EQ(right->displacement_mm[70], 2 * log.displacement_mm[70]);
 }
 
-TEST(Log, ARecordedRunIsAFolder) {
+TEST(Log, FolderIsReadAsARecordedRun) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "softgrip_log_test_run";
   ASSERT_TRUE(write_file((folder / "run.csv").string(), good_text()));
   Problems problems;

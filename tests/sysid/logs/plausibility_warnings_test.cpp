@@ -18,7 +18,7 @@ std::string all_of(const std::vector<std::string>& warnings) {
   return text;
 }
 
-TEST(PlausibilityWarnings, SignScaleAndOrder) {
+TEST(PlausibilityWarnings, WrongSignScaleOrOrderIsReported) {
   Log log;
   for (int i = 0; i < 400; ++i) {
     const double p = 30 - std::abs(i % 100 - 50) * 0.6;
@@ -54,7 +54,7 @@ TEST(PlausibilityWarnings, SignScaleAndOrder) {
 
 /// Tests logs with a positive pressure and logs with a vacuum. Each log is recorded in every unit whose
 /// values differ strongly from those in kPa.
-TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
+TEST(PlausibilityWarnings, ImplausiblePressureOrLengthUnitIsNamed) {
   const auto warnings = [](double peak, double mm) {
     Log log;
     for (int i = 0; i < 400; ++i) {
@@ -83,7 +83,7 @@ TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
 }
 
 /// The warning must state the largest value of the column and the reason why the unit is probably wrong.
-TEST(PlausibilityWarnings, AUnitIsNamedWithItsColumn) {
+TEST(PlausibilityWarnings, UnitWarningStatesColumnAndOption) {
   Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   const std::vector<double> kpa = log.pressure_command_kpa;
   for (const auto& [unit, factor] :
@@ -95,7 +95,7 @@ TEST(PlausibilityWarnings, AUnitIsNamedWithItsColumn) {
   }
 }
 
-TEST(PlausibilityWarnings, NoneAboutAFingerAsItIs) {
+TEST(PlausibilityWarnings, CorrectLogsGiveNoWarning) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     std::vector<Log> logs;
     for (const auto signal :
@@ -105,7 +105,7 @@ TEST(PlausibilityWarnings, NoneAboutAFingerAsItIs) {
   }
 }
 
-TEST(PlausibilityWarnings, ColumnsThatAreSwappedRunTheirLoopsBackwards) {
+TEST(PlausibilityWarnings, SwappedColumnsAreReported) {
   for (const auto signal : {model::SignalName::tp1, model::SignalName::steps, model::SignalName::hold}) {
     Log log = simulated(loaded("bench_twin"), signal, 50, 0.05, 7);
     std::swap(log.pressure_command_kpa, log.displacement_mm);
@@ -113,7 +113,7 @@ TEST(PlausibilityWarnings, ColumnsThatAreSwappedRunTheirLoopsBackwards) {
   }
 }
 
-TEST(PlausibilityWarnings, AGripIsNoFreeMotion) {
+TEST(PlausibilityWarnings, HoldingAPartIsReported) {
   Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   log.others.push_back({"result", std::vector<std::string>(log.size(), "none")});
   EXPECT_TRUE(plausibility_warnings(log).empty());
@@ -122,7 +122,7 @@ TEST(PlausibilityWarnings, AGripIsNoFreeMotion) {
       << all_of(plausibility_warnings(log));
 }
 
-TEST(PlausibilityWarnings, OneLogInAnotherUnitStandsOutAmongTheOthers) {
+TEST(PlausibilityWarnings, LogInADifferentUnitIsReported) {
   std::vector<Log> logs(3, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
   logs[0].name = "a", logs[1].name = "b", logs[2].name = "c";
   for (double& y : logs[1].displacement_mm) y /= 25.4;
@@ -134,7 +134,7 @@ TEST(PlausibilityWarnings, OneLogInAnotherUnitStandsOutAmongTheOthers) {
   EXPECT_EQ(warnings.find("a: "), std::string::npos);
 }
 
-TEST(PlausibilityWarnings, ALogThatIsGivenTwice) {
+TEST(PlausibilityWarnings, DuplicateLogIsReported) {
   std::vector<Log> logs(2, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
   logs[0].name = "a", logs[1].name = "b";
   logs[0].displacement_mm[3] = logs[1].displacement_mm[3] = std::numeric_limits<double>::quiet_NaN();
@@ -145,7 +145,7 @@ TEST(PlausibilityWarnings, ALogThatIsGivenTwice) {
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
 }
 
-TEST(PlausibilityWarnings, ReadingsInAnotherUnitThanTheModels) {
+TEST(PlausibilityWarnings, ReadingsScaledAgainstTheModelAreReported) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::vector<double> predicted = log.displacement_mm;
   EXPECT_EQ(scale_warning("x", predicted, log.displacement_mm, log.output_unit), "");

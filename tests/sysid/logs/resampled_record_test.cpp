@@ -53,7 +53,7 @@ double integral_kpa_s(const Record& record) {
   return sum;
 }
 
-TEST(StridedRecord, AStepComesNeitherEarlyNorLateWhereverItIs) {
+TEST(StridedRecord, StepKeepsTheIntegralOfTheCommand) {
   for (const bool held : {false, true}) {
     for (std::size_t step = 12; step < 16; ++step) {
       std::vector<double> drive_kpa(41, 0);
@@ -72,20 +72,20 @@ TEST(StridedRecord, AStepComesNeitherEarlyNorLateWhereverItIs) {
   }
 }
 
-TEST(StridedRecord, ACornerStaysSharp) {
+TEST(StridedRecord, CornerOfTheCommandIsPreserved) {
   std::vector<double> drive_kpa;
   for (int i = 0; i <= 40; ++i) drive_kpa.push_back(50 - 0.5 * std::abs(i - 20));
   const Record thin = thinned_record(commanded(drive_kpa), 2);
   for (std::size_t i = 0; i < thin.size(); ++i) EXPECT_DOUBLE_EQ(thin.drive_kpa[i], drive_kpa[2 * i]);
 }
 
-TEST(StridedRecord, BeginsWhereTheRecordBegins) {
+TEST(StridedRecord, StartsWithTheFirstCommandOfTheRecord) {
   std::vector<double> drive_kpa(9, 60);
   drive_kpa[0] = 0;
   EXPECT_EQ(thinned_record(commanded(drive_kpa), 2).drive_kpa[0], 0);
 }
 
-TEST(AveragedRecord, KeepsTheMotionAndItsTimes) {
+TEST(AveragedRecord, KeepsMotionAndSampleTimes) {
   const Record averaged = averaged_to(parabola(0), 0.010);
   ASSERT_EQ(averaged.size(), 401U);
   EXPECT_EQ(averaged.readings, 401U);
@@ -100,13 +100,13 @@ TEST(AveragedRecord, KeepsTheMotionAndItsTimes) {
   }
 }
 
-TEST(AveragedRecord, HasLessNoiseByTheRootOfTheNumber) {
+TEST(AveragedRecord, ReducesNoiseByTheRootOfTheSampleCount) {
   const double noise_mm = 0.05;
   const Record averaged = averaged_to(parabola(noise_mm), 0.025);
   EXPECT_NEAR(fast_noise_mm(averaged), noise_mm / 5, 0.2 * noise_mm / 5);
 }
 
-TEST(AveragedRecord, ReadingsThatAreNotThereAreNotInvented) {
+TEST(AveragedRecord, MeanIsMissingOnlyIfAllReadingsAreMissing) {
   Record record = parabola(0);
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 96; i <= 104; ++i) record.reading_mm[i] = none;
@@ -120,12 +120,12 @@ TEST(AveragedRecord, ReadingsThatAreNotThereAreNotInvented) {
   EXPECT_EQ(averaged.readings, 400U);
 }
 
-TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
+TEST(AveragedRecord, SparseRecordStaysUnchanged) {
   const Record record = parabola(0.05);
   EXPECT_EQ(averaged_to(record, 0.0015).reading_mm, record.reading_mm);
 }
 
-TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
+TEST(AveragedRecord, CampaignIsAveragedToTheRequestedCount) {
   const std::vector<Record> campaign{parabola(0), parabola(0)};  // each record has 4001 readings
   EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U)
       << "the records have no more readings than requested, so no means are computed";
@@ -136,7 +136,7 @@ TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
       << "a mean must not cover more than 5 ms";
 }
 
-TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
+TEST(StridedRecord, OnlyAveragingChangesTheFinestInterval) {
   EXPECT_EQ(thinned_to(parabola(0), 0.02).finest_interval_s, 1e-3);
   EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12)
       << "a mean over a longer time would smooth a fast signal";
@@ -175,14 +175,14 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
   EXPECT_TRUE(thin.supply_kpa.empty());
 }
 
-TEST(CentredRecord, CountsTheReadingsThatAreLeft) {
+TEST(CentredRecord, CountsTheRemainingReadings) {
   Record record = ramp();
   for (std::size_t i = 1000; i < 3000; ++i) record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
   const Record thin = thinned_to_centres(record, 0.02);
   EXPECT_NEAR(static_cast<double>(thin.readings), 0.5 * static_cast<double>(thin.size()), 2);
 }
 
-TEST(CentredRecord, WhatIsCoarserAlreadyStaysAsItIs) {
+TEST(CentredRecord, CoarserRecordStaysUnchanged) {
   const Record same = thinned_to_centres(ramp(), 0.5e-3);
   EXPECT_EQ(same.time_s, ramp().time_s);
   EXPECT_EQ(same.sample_time_s, 1e-3);
@@ -197,7 +197,7 @@ Log three_samples() {
   return log;
 }
 
-TEST(FinerRecord, GoesStraightBetweenSamplesAndKnowsNoReadingThere) {
+TEST(FinerRecord, InterpolatesTheDriveAndAddsNoReadings) {
   const Record record = make_records({three_samples()}, {}).front();
   const Record fine = finer_record(record, 2);
   ASSERT_EQ(fine.size(), 5U);
@@ -209,12 +209,12 @@ TEST(FinerRecord, GoesStraightBetweenSamplesAndKnowsNoReadingThere) {
   EXPECT_EQ(finer_record(record, 1).time_s, record.time_s);
 }
 
-TEST(FinerRecord, AHeldDriveStaysWhereItWas) {
+TEST(FinerRecord, HeldDriveIsNotInterpolated) {
   const Record fine = finer_record(make_records({three_samples()}, {.held = true}).front(), 2);
   EXPECT_EQ(fine.drive_kpa, (std::vector<double>{0, 0, 10, 10, 30}));
 }
 
-TEST(FewerReadings, LeavesEveryKthAndAllSamples) {
+TEST(FewerReadings, KeepsEveryKthReadingAndAllSamples) {
   Record record = ramp();
   record.reading_mm[3] = std::numeric_limits<double>::quiet_NaN();
   --record.readings;

@@ -7,7 +7,7 @@
 namespace softgrip::sysid::sensor_codes_test {
 namespace {
 
-TEST(SensorCodes, AreFarFromAllReadings) {
+TEST(SensorCodes, AreKnownOrRepeatedValuesFarFromAllReadings) {
   std::vector<double> column;
   for (int i = 0; i < 200; ++i) column.push_back(0.1 * i);
   EXPECT_EQ(sensor_codes(column), std::vector<double>{});

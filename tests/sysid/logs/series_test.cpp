@@ -7,7 +7,7 @@
 namespace softgrip::sysid::series_test {
 namespace {
 
-TEST(Series, IsCsvWithEmptyCellsWhereNothingIs) {
+TEST(Series, MissingValuesAreEmptyCsvCells) {
   Log log;
   log.name = "run";
   log.time_s = {0, 0.01, 0.02};
@@ -28,7 +28,7 @@ TEST(Series, IsCsvWithEmptyCellsWhereNothingIs) {
   EXPECT_EQ(series_of(log, record, true).held_out, (std::vector<bool>{true, false, true}));
 }
 
-TEST(Series, OfAveragedReadingsHasTheirSamples) {
+TEST(Series, AveragedReadingsUseTheSamplesOfTheRecord) {
   Log log;
   log.time_s = {0, 0.001, 0.002, 0.003};
   log.displacement_mm = {1, 2, 3, 4};
@@ -42,7 +42,7 @@ TEST(Series, OfAveragedReadingsHasTheirSamples) {
   EXPECT_EQ(series.held_out, (std::vector<bool>{false, false}));
 }
 
-TEST(Series, ALogsNameStaysWithinTheFolder) {
+TEST(Series, PathStaysWithinTheOutputFolder) {
   EXPECT_EQ(series_path("tp1"), "tp1/series.csv");
   EXPECT_EQ(series_path("2026-11-20T04-21-40Z_pick/left (2)"),
             "2026-11-20T04-21-40Z_pick_left (2)/series.csv");

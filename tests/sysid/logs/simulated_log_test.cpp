@@ -45,7 +45,7 @@ TEST(Simulate, DoesNotDependOnTheRate) {
   }
 }
 
-TEST(Simulate, RepeatsABitForBitAndChangesWithTheSeed) {
+TEST(Simulate, ResultIsReproducibleAndDependsOnTheSeed) {
   const model::Model model = twin();
   const auto with_seed = [&](std::uint64_t seed) {
     Log log = sampled_signal(model::SignalName::tp1, 20);

@@ -8,14 +8,14 @@
 namespace softgrip::sysid::unit_factors_test {
 namespace {
 
-TEST(UnitFactors, OfPressureAreKnownBothWays) {
+TEST(UnitFactors, PressureFactorsAreRecognisedInBothDirections) {
   EXPECT_EQ(pressure_units_apart(6.9), "psi and kPa");
   EXPECT_EQ(pressure_units_apart(0.145), "psi and kPa");
   EXPECT_EQ(pressure_units_apart(0.01), "bar and kPa");
   EXPECT_EQ(pressure_units_apart(3), "");
 }
 
-TEST(UnitFactors, SayWhichColumnWasProbablyMistaken) {
+TEST(UnitFactors, MessageNamesTheColumnWithTheWrongUnit) {
   EXPECT_NE(mistaken_unit(6.7, model::OutputUnit::mm)
                 .find("psi in a pressure column read as kPa (a factor of 6.895)"),
             std::string::npos);
@@ -27,7 +27,7 @@ TEST(UnitFactors, SayWhichColumnWasProbablyMistaken) {
   EXPECT_NE(mistaken_unit(1050, model::OutputUnit::mm).find("micrometres"), std::string::npos);
 }
 
-TEST(UnitFactors, AFingerOfAnotherSizeIsNone) {
+TEST(UnitFactors, TypicalSizeRatiosAreNoUnitError) {
   for (const double factor : {0.3, 0.7, 1.0, 1.5, 3.0, 5.0, 15.0})
     EXPECT_EQ(mistaken_unit(factor, model::OutputUnit::mm), "");
 }
@@ -40,7 +40,7 @@ TEST(ColumnExtent, IsFromTheLowestToTheHighestValue) {
   EXPECT_EQ(extent->width(), 8);
 }
 
-TEST(ColumnExtent, LooksOverWhatIsNoNumber) {
+TEST(ColumnExtent, IgnoresNonFiniteValues) {
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   const auto extent = extent_of({nan, 2, infinity, 4, -infinity});
   ASSERT_TRUE(extent);
@@ -48,7 +48,7 @@ TEST(ColumnExtent, LooksOverWhatIsNoNumber) {
   EXPECT_EQ(extent->highest, 4);
 }
 
-TEST(ColumnExtent, IsNoneWhereNoValueIsANumber) {
+TEST(ColumnExtent, IsAbsentWithoutFiniteValues) {
   EXPECT_FALSE(extent_of({}));
   EXPECT_FALSE(extent_of({std::nan(""), std::nan("")}));
 }

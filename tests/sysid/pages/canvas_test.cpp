@@ -15,7 +15,7 @@ TEST(Canvas, EveryElementHasItsColourWithAndWithoutAStyleSheet) {
             std::string::npos);
 }
 
-TEST(Canvas, ABoxIsNeverNegative) {
+TEST(Canvas, BoxWidthIsNeverNegative) {
   Canvas canvas;
   canvas.box(0, 0, -3, 5, Colour::grid);
   EXPECT_NE(canvas.markup().find("width=\"0.0\""), std::string::npos);

@@ -48,7 +48,7 @@ TEST(Scale, TicksAreRoundNumbersInsideTheAxis) {
   }
 }
 
-TEST(Scale, TextsOfTicksTellThemApart) {
+TEST(Scale, TickLabelsAreDistinct) {
   const Axis axis;
   const Scale scale(axis, 1000.001, 1000.0042, 0, 500, false);
   const auto ticks = scale.ticks(6);
@@ -67,7 +67,7 @@ TEST(Scale, LogarithmicTicksArePowersOfTen) {
   EXPECT_EQ(at_of(Scale(axis, 0.5, 2000, 0, 500, false).ticks(6)), (std::vector<double>{1, 10, 100, 1000}));
 }
 
-TEST(Scale, OneValueAndNoValueStillMakeAnAxis) {
+TEST(Scale, AxisExistsForOneValueOrNoValue) {
   const Axis axis;
   EXPECT_LT(Scale(axis, 5, 5, 0, 500, true).lower(), 5);
   const Scale nothing(axis, 1e300, -1e300, 0, 500, true);
@@ -135,7 +135,7 @@ TEST(Thinning, KeepsEveryExtreme) {
   EXPECT_EQ(drawn, data);
 }
 
-TEST(Thinning, ShortCurvesStayAsTheyAre) {
+TEST(Thinning, ShortCurvesStayUnchanged) {
   const std::vector<Pixel> curve{{0, 1}, {10, 5}, {20, 2}};
   EXPECT_EQ(thinned(curve).size(), 3U);
 }
@@ -147,7 +147,7 @@ TEST(Thinning, AGapStaysAGap) {
   EXPECT_EQ(path_data(kept), "M0 1l10 4M20 2l10 2");
 }
 
-TEST(Thinning, ALoopRunThousandTimesIsDrawnOnce) {
+TEST(Thinning, RepeatedLoopIsDrawnOnce) {
   std::vector<Pixel> curve;
   for (int i = 0; i < 1000 * 360; ++i) {
     const double angle = i * std::numbers::pi / 180;
@@ -186,7 +186,7 @@ Chart a_chart() {
   return chart;
 }
 
-TEST(Chart, IsSmallAndEscaped) {
+TEST(Chart, SvgIsSmallAndEscaped) {
   const std::string svg = to_svg(a_chart());
   EXPECT_LT(svg.size(), 60'000U);
   EXPECT_EQ(svg.find("<of>"), std::string::npos);
@@ -212,7 +212,7 @@ TEST(Chart, TagsAreBalanced) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-TEST(Chart, NothingToDrawIsStillAChart) {
+TEST(Chart, EmptyChartIsValidSvg) {
   EXPECT_NE(to_svg(Chart{}).find("</svg>"), std::string::npos);
   Chart chart;
   chart.series = {Series{.label = "", .x = {nan_value}, .y = {nan_value}, .y_upper = {}}};
@@ -229,7 +229,7 @@ TEST(Chart, UnitsOfAxesAreDrawnInWords) {
 
 // The chart must not draw every point. With all 600,000 noisy readings, the file would have several
 // megabytes.
-TEST(Chart, AnyLengthOfLogMakesASmallPicture) {
+TEST(Chart, LongLogMakesASmallFile) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
   Chart chart;
@@ -245,7 +245,7 @@ TEST(Chart, AnyLengthOfLogMakesASmallPicture) {
   EXPECT_LT(to_svg(chart).size(), 150'000U);
 }
 
-TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
+TEST(Chart, FileHasBothColourSchemesAndInlineColours) {
   const std::string svg = to_svg(a_chart());
   EXPECT_NE(svg.find("@media screen and (prefers-color-scheme:dark)"), std::string::npos);
   EXPECT_NE(svg.find("class=\"s-model\" stroke=\"#0072b2\""), std::string::npos);
@@ -254,14 +254,14 @@ TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
   EXPECT_EQ(inside.find("<style"), std::string::npos) << "the page contains the style";
 }
 
-TEST(Chart, WhatColourTellsApartDashesTellApart) {
+TEST(Chart, SeriesAndLegendUseTheDashPattern) {
   Chart chart = a_chart();
   chart.series.front().dash = Dash::dotted;
   // the curve and the legend each contain the dotted line once
   EXPECT_EQ(count(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
 }
 
-TEST(Figure, ItsNumbersStandBesideItInFullLength) {
+TEST(Figure, CsvContainsAllValuesOfTheFigure) {
   Chart above;
   above.y.label = "displacement [mm]";
   above.series = {Series{.label = "read, twice", .x = {0, 0.5}, .y = {1, nan_value}, .y_upper = {}},
@@ -276,11 +276,11 @@ TEST(Figure, ItsNumbersStandBesideItInFullLength) {
             "0.5,,2,,\n");
 }
 
-TEST(Chart, SameValuesSameBytes) {
+TEST(Chart, EqualValuesGiveIdenticalSvg) {
   EXPECT_EQ(to_svg(a_chart()), to_svg(a_chart()));
 }
 
-TEST(Chart, HasPointsOverNamesOfWhichTheSquareOnesHaveADirection) {
+TEST(Chart, CategoryChartDrawsSquareAndRoundPoints) {
   Chart chart = chart_over({"first", "second", "third"});
   chart.series = {points_over_names("square", Colour::error, {1, 2, 3}),
                   points_over_names("round", Colour::model, {2, nan_value, 1})};

@@ -29,7 +29,7 @@ TEST(Page, EveryTextThatEntersIsEscaped) {
   EXPECT_NE(html.find("&lt;img"), std::string::npos);
 }
 
-TEST(Page, StandsAloneAndOpensWithTheVerdict) {
+TEST(Page, IsSelfContainedAndOpensWithTheVerdict) {
   Page page("Identification", "The model fits.", Tone::good);
   page.provenance({{"software", software_and_version()}});
   page.section("Fit");
@@ -52,7 +52,7 @@ Chart noisy_chart(int samples) {
   return chart;
 }
 
-TEST(Page, FiguresAreNumberedInTurnAndCanBeKeptAsFiles) {
+TEST(Page, FiguresAreNumberedAndDownloadable) {
   Page page("T", "V", Tone::good);
   for (const std::string name : {"error over time, tp1", "", "loops"})
     page.figure({name, "What it shows.", {{noisy_chart(100)}}});
@@ -69,7 +69,7 @@ TEST(Page, FiguresAreNumberedInTurnAndCanBeKeptAsFiles) {
   EXPECT_EQ(figure_stem(2, ""), "figure-2");
 }
 
-TEST(Page, StaysBelowItsBoundHoweverManyFigures) {
+TEST(Page, SizeStaysBelowTheLimitForManyFigures) {
   Page page("T", "V", Tone::good);
   for (int i = 0; i < 100; ++i) page.figure({"loops", "Loops.", {{noisy_chart(20'000)}}});
   const std::string html = page.to_html();
@@ -78,7 +78,7 @@ TEST(Page, StaysBelowItsBoundHoweverManyFigures) {
   EXPECT_EQ(page.figures().size(), 100U) << "the omitted figures must still be available for --figures";
 }
 
-TEST(Page, BothColourSchemesAndAPageBreakBeforeTheAppendix) {
+TEST(Page, HasBothColourSchemesAndAnAppendixPageBreak) {
   Page page("T", "V", Tone::good);
   for (const char* title : {"a", "b"}) page.section(title);
   EXPECT_EQ(page.to_html().find("<nav>"), std::string::npos);

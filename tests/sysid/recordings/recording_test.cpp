@@ -34,13 +34,13 @@ class RecordingTest : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("softgrip_recording_" + std::to_string(::getpid()));
 };
 
-TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
+TEST_F(RecordingTest, InvalidRecordingIsRefused) {
   EXPECT_NE(read().error().find("run.csv"), std::string::npos) << "the error must name run.csv";
   write("run.csv", "hello\n");
   EXPECT_EQ(read().error(), "") << "the list of problems must contain the reason";
 }
 
-TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {
+TEST_F(RecordingTest, NamedPipeIsNotWaitedFor) {
   write("run.csv", csv);
   ASSERT_EQ(::mkfifo((folder / "run.json").c_str(), 0600), 0);
   EXPECT_TRUE(read()) << "a recording without run.json is still a recording";

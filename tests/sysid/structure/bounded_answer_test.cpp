@@ -30,11 +30,11 @@ model::Model finger(double alpha_mm_per_kpa, double beta_mm_per_kpa) {
       {}, {model::block_type<model::BoucWen>(), {alpha_mm_per_kpa, beta_mm_per_kpa, 0.004, 0.03, 1}});
 }
 
-TEST(StaysBounded, AFingerThatDoesTheSameTwiceDoes) {
+TEST(StaysBounded, IsTrueForAnUnchangedFinger) {
   EXPECT_TRUE(stays_bounded({finger(0.5, 0.3), {StartState{}}}, {stroke(finger(0.5, 0.3))}));
 }
 
-TEST(StaysBounded, AnAnswerBeyondTheReadingsDoesNot) {
+TEST(StaysBounded, IsFalseForAResponseBeyondTheReadings) {
   const Record record = stroke(finger(0.5, 0.3));
   EXPECT_FALSE(stays_bounded({finger(2, 0.3), {StartState{}}}, {record}))
       << "the simulated response exceeds the readings in the first stroke";
@@ -44,7 +44,7 @@ TEST(StaysBounded, AnAnswerBeyondTheReadingsDoesNot) {
       << "the simulated response is below the readings";
 }
 
-TEST(StaysBounded, TheSecondStrokeCounts) {
+TEST(StaysBounded, IsFalseIfTheSecondStrokeDiverges) {
   for (const bool runs_off : {false, true}) {
     const model::Model ageing = model::with_block(
         finger(0.5, 0.3), {model::block_type<model::Ageing>(), {runs_off ? 1000.0 : 100.0}});
@@ -52,7 +52,7 @@ TEST(StaysBounded, TheSecondStrokeCounts) {
   }
 }
 
-TEST(StaysBounded, OneRecordIsEnough) {
+TEST(StaysBounded, IsFalseIfOneRecordIsExceeded) {
   const model::Model model = finger(0.5, 0.3);
   Record small = stroke(model);
   for (double& reading : small.reading_mm) reading *= 0.1;

@@ -18,7 +18,7 @@ BaseStructure complete() {
           .modes = 2};
 }
 
-TEST(Ingredient, EachIsRemovedOnceAndHasAName) {
+TEST(Ingredient, EachIsRemovableAndHasAUniqueName) {
   std::set<std::string_view> names;
   for (const Ingredient ingredient : all_ingredients) {
     SCOPED_TRACE(name_of(ingredient));
@@ -32,7 +32,7 @@ TEST(Ingredient, EachIsRemovedOnceAndHasAName) {
   EXPECT_EQ(names.size(), all_ingredients.size());
 }
 
-TEST(Ingredient, ALagTakesItsExtensionsWithIt) {
+TEST(Ingredient, RemovingALagRemovesTheLagExtensions) {
   const BaseStructure rest = without(complete(), Ingredient::lag);
   EXPECT_FALSE(rest.lag || rest.second_lag || rest.rate_limit);
   EXPECT_TRUE(rest.delay);

@@ -113,7 +113,7 @@ TEST(LinearModes, AStartDuringTheMotionIsEstimated) {
   EXPECT_NEAR(rmse_of(again.model, again.starts, records), found.rmse_mm, 1e-3);
 }
 
-TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
+TEST(LinearModes, FastTestDetectsMissingLinearDynamics) {
   const std::vector<Record> records{random_steps(with_modes({0.3, 1.2, 0.1, -0.1, 0.2}), 4)};
   const StructureChoiceOptions options;
   const StructureJudge judge(records, options);
@@ -132,7 +132,7 @@ TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
   EXPECT_TRUE(judge.is_noise(complete));
 }
 
-TEST(LinearModes, TheColumnsOfAStructureAreWhatTheBlockDoes) {
+TEST(LinearModes, ColumnsReproduceTheModelResponse) {
   const std::vector<Record> records{random_steps(with_modes({0, 0.9, 0.2, 0.25, 0}), 3)};
   const BaseStructure structure{.characteristic = false, .modes = 1};
   const FittedStructure fit = fit_form(records, structure, grid_for(records), {});

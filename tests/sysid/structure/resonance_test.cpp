@@ -41,7 +41,7 @@ double period_s(const FitPoint& point) {
   return model::value<model::Inertia>(*model::find_block<model::Inertia>(point.model), "period_s");
 }
 
-TEST(Resonance, PeriodsOverADecadeAreFoundWithTheDelayBesideThem) {
+TEST(Resonance, PeriodAndDelayAreFoundOverADecade) {
   for (const double truth_s : {0.2, 0.6, 2.0}) {
     const std::vector<Record> records{steps(ringing_finger(truth_s))};
     const ResonantFit fit = with_resonance({finger(0.1), {StartState{}}}, records, ResonanceFit::dynamics);
@@ -55,7 +55,7 @@ TEST(Resonance, PeriodsOverADecadeAreFoundWithTheDelayBesideThem) {
 
 /// The rig has a resonance and almost no dead time. The first fit has no resonance, so it represents the slow
 /// rise of the displacement by a dead time of 0.14 s.
-TEST(Resonance, IsFoundBehindADeadTimeThatOnlyReplacedIt) {
+TEST(Resonance, IsFoundDespiteAnInflatedDeadTime) {
   const auto lagging = [](double delay_s, double lag_s) {
     return model::with_block(finger(delay_s),
                              {model::block_type<model::AsymmetricValveLag>(), {lag_s, lag_s}});
@@ -69,7 +69,7 @@ TEST(Resonance, IsFoundBehindADeadTimeThatOnlyReplacedIt) {
   EXPECT_LT(fit.rmse_mm, 0.05);
 }
 
-TEST(Resonance, FollowsOtherReadingsFromWhereItWas) {
+TEST(Resonance, RefitFollowsAChangedPeriod) {
   const FitPoint before{ringing_finger(0.6), {StartState{}}};
   const FitPoint after = with_resonance_of(before, {finger(0.06), {StartState{}}},
                                            {steps(ringing_finger(0.66))}, ResonanceFit::dynamics);

@@ -78,7 +78,7 @@ double continuation_rmse_mm(const model::Model& truth, const model::Model& found
   return rms(std::span(left).subspan(first));
 }
 
-TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
+TEST(StructureColumns, ReproduceTheResponseOfTheModelBlocks) {
   const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 97, 0.03, 4)};
   for (const Start start : {Start::rest, Start::unknown}) {
     RecordOptions options;
@@ -100,7 +100,7 @@ TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
 
 // The pressure rises and falls at different limited rates. If one rate is missing or both are exchanged, the
 // prediction must therefore change.
-TEST(StructureColumns, AreWhatARateLimitOfTheModelDoes) {
+TEST(StructureColumns, ReproduceTheResponseOfARateLimit) {
   const model::Model limited =
       model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
   const std::vector<Record> records = make_records({simulated(limited, SignalName::steps, 97, 0.03, 4)}, {});
@@ -144,7 +144,7 @@ TEST(StructureColumns, AreBitForBitTheSameOnMoreThreads) {
   EXPECT_EQ(structure_columns(records, structure, grid, numbers), alone);
 }
 
-TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
+TEST(PublishedElement, RefitWithoutABlockPredictsTheBlock) {
   const std::vector<Record> records =
       make_records({simulated(loaded("bench_twin"), SignalName::tp1, 100, 0.05, 2)}, {});
   const PublishedElement whole = fit_published(records, Drive::command, 6, 1);
@@ -176,7 +176,7 @@ TEST(StructureProjection, WeightsAreNeverNegative) {
   EXPECT_NEAR(found.weights.head(layout.own()).sum(), 0, 1e-3);
 }
 
-TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
+TEST(WithoutWandering, RemovesZeroDriftAndKeepsTheFingerResponse) {
   const Log steady = simulated(play_finger(), SignalName::tp1, 100, 0.03, 5);
   Log drifting = steady;
   constexpr double drift_mm = 0.8, period_s = 90;
@@ -201,7 +201,7 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
   EXPECT_LT(rms(missed), 0.1 * drift_mm);
 }
 
-TEST(IdentifyStructure, FindsThePublishedElementWithItsDelayAndItsLag) {
+TEST(IdentifyStructure, FindsBoucWenWithDelayAndLag) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs;
   for (const SignalName signal : {SignalName::tp1, SignalName::steps, SignalName::sp2})
@@ -226,7 +226,7 @@ TEST(IdentifyStructure, FindsThePublishedElementWithItsDelayAndItsLag) {
   EXPECT_EQ(checked, 2);
 }
 
-TEST(IdentifyStructure, IsChosenByMeansOfADenseLogAndFittedToAllItsSamples) {
+TEST(IdentifyStructure, DenseLogIsAveragedForTheChoiceButFittedFully) {
   const double noise_mm = 0.05;
   const std::vector<Log> logs{simulated(loaded("bench_twin"), SignalName::tp1, 1000, noise_mm, 3)};
   ASSERT_GT(logs.front().size(), enough_readings);
@@ -248,7 +248,7 @@ TEST(IdentifyStructure, IsChosenByMeansOfADenseLogAndFittedToAllItsSamples) {
   }
 }
 
-TEST(IdentifyStructure, FindsAFingerOfPlays) {
+TEST(IdentifyStructure, FindsPlayOperatorsWithoutSpuriousBlocks) {
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 5),
                               simulated(play_finger(), SignalName::sp2, 100, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::automatic);
@@ -273,7 +273,7 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
 
 /// The fit must find the generalised play operators. A nonlinear gain after the operators cannot replace
 /// them, and pressure-dependent creep cannot replace them.
-TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
+TEST(IdentifyStructure, FindsNonlinearEnvelopesOfPlayOperators) {
   const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::automatic);
@@ -290,7 +290,7 @@ TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
   EXPECT_GT(straight->heldout_rmse_mm, 1.3 * chosen->heldout_rmse_mm);
 }
 
-TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
+TEST(IdentifyStructure, FindsAnEarlierPeakPressure) {
   model::Model trained = play_finger();
   const std::size_t plays = *model::position_of<model::PrandtlIshlinskii>(trained);
   trained.blocks[plays].values.front() = 50;
@@ -308,7 +308,7 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
 
 /// The log contains no measured pressure, but the overlap of the regulator is visible in the displacement.
 /// The fit must find a regulator and not describe the overlap by a lag.
-TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
+TEST(IdentifyStructure, FindsARegulatorWithoutMeasuredPressure) {
   model::Model regulated =
       model::without_block(play_finger(), model::block_type<model::AsymmetricValveLag>());
   regulated = model::with_block(std::move(regulated),
@@ -328,8 +328,8 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// This finger has two lags, and play_finger() has one. The test FindsAFingerOfPlays checks that the fit
-/// finds no second lag for play_finger().
+/// This finger has two lags, and play_finger() has one. The test FindsPlayOperatorsWithoutSpuriousBlocks
+/// checks that the fit finds no second lag for play_finger().
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
@@ -382,7 +382,7 @@ TEST(IdentifyStructure, FindsAResonance) {
 
 /// The fit uses the first 20 s of the log, which contain one pressure cycle. The cycle begins and ends at an
 /// idle pressure of 7 kPa.
-TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
+TEST(IdentifyStructure, OneStrokeFromAnIdlePressureStartsAtRest) {
   constexpr double idle_kpa = 7;
   const model::Model finger = play_finger();
   Log log;
@@ -406,7 +406,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   EXPECT_LT(found->held_out[0].rmse_mm, 0.05 * span_mm(log)) << "prediction error in the second stroke";
 }
 
-TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
+TEST(SimplestStart, UnknownStartIsKeptIfStatedOrRequired) {
   const Log whole = simulated(play_finger(), SignalName::tp1, 100, 0.03, 15);
   Log late;  // the log without its first 3 s; it starts during a rise of the pressure, after other cycles
   late.name = "late";
@@ -425,7 +425,7 @@ TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
       << "the options state that the initial state is unknown";
 }
 
-TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
+TEST(IdentifyStructure, ResultIsIndependentOfTheDisplacementUnit) {
   const Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 7);
   const auto one = identify_structure({log}, StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(one);
@@ -439,7 +439,7 @@ TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
   }
 }
 
-TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
+TEST(IdentifyStructure, FitReachesTheMinimumOfTheLinearProblem) {
   // If the nonlinear parameters have their true values, the weights result from a linear problem. A fit of
   // the same structure must reach the minimum of this problem, except for the effect of the ridge penalty.
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
@@ -455,7 +455,7 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
   EXPECT_LT(searched.mean_square_mm2, 1.01 * relaxed.mean_square_mm2);
 }
 
-TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
+TEST(IdentifyStructure, MeasuredPressureGivesASeparateValveStage) {
   // The valve blocks of the identified model must predict the measured pressure. The other blocks must
   // predict the displacement.
   const model::Model whole = play_finger();
@@ -483,7 +483,7 @@ TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
   EXPECT_TRUE(model::validate(found->model).empty());
 }
 
-TEST(ValveStage, BeginsWhereThePressureWasWhateverTheCommandIs) {
+TEST(ValveStage, StartsAtTheMeasuredPressure) {
   Log log;
   log.name = "log";
   double p = 8;
@@ -501,7 +501,7 @@ TEST(ValveStage, BeginsWhereThePressureWasWhateverTheCommandIs) {
   EXPECT_LT(stage.rmse_percent, 1);
 }
 
-TEST(IdentifyStructure, SaysWhyItCannot) {
+TEST(IdentifyStructure, InsufficientLogsAreRejectedWithAReason) {
   Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 5);
   EXPECT_FALSE(identify_structure({}, StructureQuestion::automatic));
   IdentifyOptions measured;

@@ -26,7 +26,7 @@ CommissioningOptions short_one() {
   return options;
 }
 
-TEST(CommissioningRun, PlaysTwiceWithOtherNoise) {
+TEST(CommissioningRun, RunsEachExperimentTwiceWithDifferentNoise) {
   std::vector<std::string> told;
   CommissioningOptions options = short_one();
   options.tell = [&](const std::string& line) { told.push_back(line); };
@@ -46,7 +46,7 @@ TEST(CommissioningRun, PlaysTwiceWithOtherNoise) {
   EXPECT_EQ(told[1].rfind("first: first_load", 0), 0U) << told[1];
 }
 
-TEST(CommissioningRun, AsksBeforeARealRigMovesAndTakesNoForAnAnswer) {
+TEST(CommissioningRun, DoesNotMoveARealRigWithoutTheConsentOfTheOperator) {
   ExperimentRig rig = free_rig();
   rig.simulated = false;
   CommissioningOptions options = short_one();
@@ -63,7 +63,7 @@ TEST(CommissioningRun, AsksBeforeARealRigMovesAndTakesNoForAnAnswer) {
   EXPECT_NE(question.find("about 3.8 minutes"), std::string::npos) << question;
 }
 
-TEST(CommissioningRun, AFingerThatGoesFurtherThanItsModelIsKeptWithinItsRange) {
+TEST(CommissioningRun, KeepsAFingerThatIsSofterThanTheModelWithinTheLimits) {
   for (const double share : {1.0, 0.6}) {
     ExperimentRig rig = free_rig();
     model::Model& believed = rig.rig.settings.channels[rig.channel].model;
@@ -84,7 +84,7 @@ TEST(CommissioningRun, AFingerThatGoesFurtherThanItsModelIsKeptWithinItsRange) {
   }
 }
 
-TEST(CommissioningRun, EveryUsualExperimentIsOnTheMenu) {
+TEST(CommissioningRun, TheExperimentMenuContainsEveryDefaultExperiment) {
   const auto menu = sysid::experiment_menu({});
   for (const std::string& name : usual_commissioning()) {
     EXPECT_TRUE(std::any_of(menu.begin(), menu.end(), [&](const auto& w) { return w.name == name; })) << name;

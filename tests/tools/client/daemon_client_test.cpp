@@ -71,7 +71,7 @@ tl::expected<Json, ClientFailure> answer_to(const std::string& reply) {
   return client->ask({{"command", "status"}});
 }
 
-TEST(DaemonClient, ReturnsTheResult) {
+TEST(DaemonClient, ReturnsTheResultOfASuccessfulReply) {
   const auto result = answer_to("{\"id\": null, \"ok\": true, \"result\": {\"state\": \"idle\"}}\n");
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_EQ((*result)["state"], "idle");
@@ -91,7 +91,7 @@ class HangingDaemon : public ::testing::Test {
   Descriptor listener_;
 };
 
-TEST_F(HangingDaemon, HoldsNoOneWhoSends) {
+TEST_F(HangingDaemon, DoesNotBlockAClientThatSendsRequests) {
   auto client = DaemonClient::connect_at_once(path_);
   ASSERT_TRUE(client);
   const Json request{{"command", std::string(10'000, 'x')}};
@@ -107,7 +107,7 @@ TEST_F(HangingDaemon, HoldsNoOneWhoSends) {
   EXPECT_FALSE(client->next_line(std::chrono::milliseconds(0)));
 }
 
-TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
+TEST(DaemonClient, ErrorStatesHowToProceedIfNoDaemonListens) {
   const auto absent = DaemonClient::connect("/tmp/no/such.sock");
   ASSERT_FALSE(absent);
   EXPECT_EQ(absent.error().code, ExitCode::io);
@@ -124,7 +124,7 @@ TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(DaemonClient, DoesNotWaitForADaemonThatAcceptsNobodyIfItMustNot) {
+TEST(DaemonClient, ConnectAtOnceFailsIfTheConnectionQueueIsFull) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("softgrip_full_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -155,7 +155,7 @@ TEST(DaemonClient, MapsRefusalsToExitCodes) {
   EXPECT_NE(sequence.error().message.find("a.yaml:3:5: m (h)"), std::string::npos);
 }
 
-TEST(DaemonClient, SurvivesADaemonThatTalksNonsenseOrHangsUp) {
+TEST(DaemonClient, ReportsMalformedAndIncompleteRepliesAsIoErrors) {
   for (const char* nonsense : {"hello\n", "[1]\n", "{}\n",
                                R"({"ok":1})"
                                "\n"}) {
@@ -176,7 +176,7 @@ struct SilentDaemon {
   Descriptor listener = std::move(*net::listen_unix(path));
 };
 
-TEST(DaemonLink, PassesLinesUntilTheConnectionEnds) {
+TEST(DaemonLink, PassesAllLinesReceivedBeforeTheConnectionEnds) {
   const SilentDaemon daemon;
   DaemonLink link(daemon.path);
   EXPECT_EQ(link.descriptor(), -1);
@@ -200,7 +200,7 @@ TEST(DaemonLink, PassesLinesUntilTheConnectionEnds) {
   EXPECT_EQ(link.descriptor(), -1);
 }
 
-TEST(DaemonLink, PausesBetweenAttempts) {
+TEST(DaemonLink, WaitsAQuarterSecondBetweenConnectionAttempts) {
   SilentDaemon daemon;
   DaemonLink link(daemon.path);
   daemon.listener = Descriptor();

@@ -27,7 +27,7 @@ class EventQueryTest : public ::testing::Test {
   }
 };
 
-TEST_F(EventQueryTest, SinceIsANumberOrATime) {
+TEST_F(EventQueryTest, SinceAcceptsAnEventIdADurationOrATime) {
   EXPECT_EQ(since("1234"), "1234");
   EXPECT_EQ(since("90s"), "2025-11-20T03:44:42.000Z");
   EXPECT_EQ(since("10min"), "2025-11-20T03:36:12.000Z");
@@ -41,7 +41,7 @@ TEST_F(EventQueryTest, SinceIsANumberOrATime) {
   }
 }
 
-TEST_F(EventQueryTest, SeverityAndTimeChoose) {
+TEST_F(EventQueryTest, SelectsEventsByIdSeverityAndTime) {
   const Json event{{"id", 7}, {"severity", "warning"}, {"at", "2025-11-20T03:46:12.000Z"}};
   EXPECT_TRUE(wanted({}, event));
   EXPECT_TRUE(wanted({{6, ""}, "warning", 1}, event));
@@ -51,7 +51,7 @@ TEST_F(EventQueryTest, SeverityAndTimeChoose) {
   EXPECT_FALSE(wanted({{0, "2025-11-20T03:46:12.001Z"}, "information", 1}, event));
 }
 
-TEST_F(EventQueryTest, AnEventShowsTheTimeOfDayWhereItHasOne) {
+TEST_F(EventQueryTest, AnEventLineShowsTheLocalTimeIfTheEventHasADate) {
   Json event{{"time_s", 12.34}, {"severity", "error"}, {"text", "The board is gone."}};
   EXPECT_EQ(line_of_event(event), "     12.340 s  error        The board is gone.");
   event["at"] = "2025-11-20T03:46:12.045Z";

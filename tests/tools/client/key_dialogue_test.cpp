@@ -21,7 +21,7 @@ class KeyDialogueTest : public ::testing::Test {
   std::string ran_ = "pick_stone";
 };
 
-TEST_F(KeyDialogueTest, TheWaysOutAskNothingBack) {
+TEST_F(KeyDialogueTest, StopVentAcknowledgeAndQuitNeedNoConfirmation) {
   EXPECT_EQ(type("s"), R"({"command":"stop"})");
   EXPECT_EQ(type("v"), R"({"command":"vent"})");
   EXPECT_EQ(type("a"), R"({"command":"acknowledge"})")
@@ -31,7 +31,7 @@ TEST_F(KeyDialogueTest, TheWaysOutAskNothingBack) {
   EXPECT_EQ(type("x"), "");
 }
 
-TEST_F(KeyDialogueTest, WhatMovesIsAskedBack) {
+TEST_F(KeyDialogueTest, ReleaseNeedsConfirmation) {
   EXPECT_EQ(type("r"), "");
   EXPECT_NE(dialogue_.question().find("held parts drop"), std::string::npos);
   EXPECT_EQ(type("n"), "");
@@ -41,7 +41,7 @@ TEST_F(KeyDialogueTest, WhatMovesIsAskedBack) {
   EXPECT_EQ(type("y"), R"({"command":"release"})");
 }
 
-TEST_F(KeyDialogueTest, AStartOffersWhatRanAndTakesAnotherName) {
+TEST_F(KeyDialogueTest, StartProposesTheLastSequenceAndAcceptsAnotherName) {
   EXPECT_EQ(type("g"), "");
   EXPECT_EQ(dialogue_.question(), "start which sequence [pick_stone]? _");
   EXPECT_EQ(type("\r"), "");
@@ -62,7 +62,7 @@ TEST_F(KeyDialogueTest, AStartOffersWhatRanAndTakesAnotherName) {
   EXPECT_TRUE(dialogue_.question().empty());
 }
 
-TEST_F(KeyDialogueTest, APasteDoesNotAnswerItsOwnQuestion) {
+TEST_F(KeyDialogueTest, PastedTextDoesNotConfirmAQuestion) {
   EXPECT_EQ(type("gpick_stone\ryyyy"), "");
   EXPECT_NE(dialogue_.question().find("Start pick_stone?"), std::string::npos);
   EXPECT_EQ(type("n"), "");
@@ -70,7 +70,7 @@ TEST_F(KeyDialogueTest, APasteDoesNotAnswerItsOwnQuestion) {
   EXPECT_FALSE(dialogue_.question().empty());
 }
 
-TEST_F(KeyDialogueTest, AQuestionThatNobodyAnswersLapses) {
+TEST_F(KeyDialogueTest, AQuestionWithoutAnAnswerExpires) {
   type("r");
   time_s_ += KeyDialogue::patience_s + 0.1;
   EXPECT_EQ(type("y"), "");
@@ -80,7 +80,7 @@ TEST_F(KeyDialogueTest, AQuestionThatNobodyAnswersLapses) {
   EXPECT_TRUE(dialogue_.question().empty());
 }
 
-TEST_F(KeyDialogueTest, AStopIsHeardInThePlaceOfAnAnswer) {
+TEST_F(KeyDialogueTest, TheStopKeyStopsWhileAConfirmationIsPending) {
   type("r");
   EXPECT_EQ(type("s"), R"({"command":"stop"})");
   EXPECT_TRUE(dialogue_.question().empty());
@@ -90,7 +90,7 @@ TEST_F(KeyDialogueTest, AStopIsHeardInThePlaceOfAnAnswer) {
   EXPECT_TRUE(dialogue_.question().empty());
 }
 
-TEST_F(KeyDialogueTest, ArrowKeysAreNoLetters) {
+TEST_F(KeyDialogueTest, ArrowKeysCauseNoRequest) {
   EXPECT_EQ(type("\x1b[A"), "");
   EXPECT_EQ(type("\x1bOs"), "");
   EXPECT_LE(KeyDialogue::help().size(), 60U);

@@ -43,7 +43,7 @@ class LastHealth : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("softgrip_last_health_" + std::to_string(::getpid()));
 };
 
-TEST_F(LastHealth, SaysWhatChangedWhenAndWhatToDo) {
+TEST_F(LastHealth, ReportsTheChangedFingerAndTheFirstNextStep) {
   const auto lines = health_lines(aged(7200, "alarm"));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].text, "Finger left has changed since the last note.");
@@ -51,14 +51,14 @@ TEST_F(LastHealth, SaysWhatChangedWhenAndWhatToDo) {
   EXPECT_FALSE(lines[0].good);
 }
 
-TEST_F(LastHealth, SaysWhenNothingHas) {
+TEST_F(LastHealth, ReportsNoChangeWithTheAgeOfTheCheck) {
   const auto lines = health_lines(aged(7200, "steady"));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_TRUE(lines[0].good);
   EXPECT_EQ(lines[0].text, "no change detected at 2 fingers, checked 2 h ago");
 }
 
-TEST_F(LastHealth, SaysWhatTheRigShares) {
+TEST_F(LastHealth, ReportsTheWarningsThatConcernTheWholeRig) {
   Json json = aged(7200, "steady");
   json["warnings"] = Json::array({"Since then the fingers have changed alike.", 3});
   const auto lines = health_lines(json);
@@ -68,14 +68,14 @@ TEST_F(LastHealth, SaysWhatTheRigShares) {
   EXPECT_TRUE(lines[1].good);
 }
 
-TEST_F(LastHealth, IsInDoubtWhenItIsLongAgo) {
+TEST_F(LastHealth, WarnsIfTheLastCheckIsTenDaysOld) {
   const auto lines = health_lines(aged(10 * 86400, "steady"));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_FALSE(lines[1].good);
   EXPECT_EQ(lines[1].text, "the fingers were last checked 10 days ago");
 }
 
-TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
+TEST_F(LastHealth, IsNullForAMissingOrMalformedResult) {
   EXPECT_TRUE(last_health("").is_null());
   EXPECT_TRUE(last_health(recordings.string()).is_null());
   for (const char* text :
@@ -86,7 +86,7 @@ TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
 
 /// last_health() must refuse a named pipe. If it waited for a program that writes to the pipe, this test
 /// would never end.
-TEST_F(LastHealth, IsNothingWhereThePathIsAPipe) {
+TEST_F(LastHealth, IsNullIfThePathIsANamedPipe) {
   std::filesystem::create_directories(recordings / "health");
   ASSERT_EQ(::mkfifo((recordings / "health/health.json").c_str(), 0600), 0);
   EXPECT_TRUE(last_health(recordings.string()).is_null());

@@ -43,7 +43,7 @@ TEST(LiveView, ShowsTrendsEventsAndKeysAtTheBottom) {
   EXPECT_EQ(lines[23], std::string(KeyDialogue::help()) + "  trends: 1 column 1 s");
 }
 
-TEST(LiveView, TheKeysAreThereWhateverTheHeight) {
+TEST(LiveView, ShowsTheKeysAtEveryWindowHeight) {
   for (std::size_t rows = 1; rows < 30; ++rows) {
     for (const std::size_t columns : {60U, 80U, 100U}) {
       const Lines lines = screen_of(state(), {columns, false, false}, rows);
@@ -54,12 +54,12 @@ TEST(LiveView, TheKeysAreThereWhateverTheHeight) {
   }
 }
 
-TEST(LiveView, ALowScreenSaysThatItHidesSomething) {
+TEST(LiveView, ASmallWindowStatesThatLinesAreHidden) {
   const Lines lines = screen_of(state(), {80, false, false}, 5);
   EXPECT_NE(lines[3].find("more lines: enlarge the window"), std::string::npos) << lines[3];
 }
 
-TEST(LiveView, AQuestionStandsAboveTheKeysInThePlaceOfTheLastAnswer) {
+TEST(LiveView, AQuestionReplacesTheLastReplyAboveTheKeys) {
   LiveState asking = state();
   asking.said = {"stopping", Tone::good};
   EXPECT_EQ(screen_of(asking, {80, false, false}, 24)[22], "stopping");
@@ -70,7 +70,7 @@ TEST(LiveView, AQuestionStandsAboveTheKeysInThePlaceOfTheLastAnswer) {
   EXPECT_EQ(narrow[22], "  y: yes, any other key: no");
 }
 
-TEST(LiveView, AReadingThatIsNotValidIsAGapInItsTrend) {
+TEST(LiveView, AnInvalidReadingLeavesAGapInTheDisplacementTrend) {
   LiveState live = state();
   Json blind = status_at(31);
   blind["channels"][0]["validity"] = "out_of_range";
@@ -80,7 +80,7 @@ TEST(LiveView, AReadingThatIsNotValidIsAGapInItsTrend) {
   EXPECT_NE(live.trends[0].pressure_kpa.glyphs(1, 1, false).front(), " ");
 }
 
-TEST(LiveView, EventsAreForgottenAndNonsenseIsSurvived) {
+TEST(LiveView, LimitsTheNumberOfEventsAndToleratesMalformedStatus) {
   LiveState live;
   for (int i = 0; i < 1000; ++i) take_event(live, event(i, "warning", "x"));
   EXPECT_EQ(live.events.size(), events_shown);

@@ -27,7 +27,7 @@ TEST(OwnStart, NoTwoStartsHaveTheSameId) {
   }
 }
 
-TEST(OwnStart, AStopIsConfirmedIfTheStartDoesNotRun) {
+TEST(OwnStart, AStopIsConfirmedBySuccessOrANotRunningRefusal) {
   EXPECT_EQ(stop_of("a"), Json::parse(R"({"command":"stop","start_id":"a"})"));
   EXPECT_TRUE(confirms_stop({{"id", 1}, {"ok", true}, {"result", {{"request", 0}}}}));
   EXPECT_TRUE(confirms_stop(refused("named_start_not_running")));
@@ -36,14 +36,14 @@ TEST(OwnStart, AStopIsConfirmedIfTheStartDoesNotRun) {
     EXPECT_FALSE(confirms_stop(failed({{"code", code}, {"message", "m"}}))) << code;
 }
 
-TEST(OwnStart, AStartIsRefusedUnlessItMayStillBegin) {
+TEST(OwnStart, AMissingReplyIsNotARefusalOfTheStart) {
   EXPECT_TRUE(refuses_start(refused("not_idle")));
   EXPECT_TRUE(refuses_start(failed({{"code", "sequence_refused"}, {"message", "m"}})));
   EXPECT_FALSE(refuses_start(failed({{"code", "no_answer"}, {"message", "m"}})));
   EXPECT_FALSE(refuses_start({{"id", 1}, {"ok", true}, {"result", {{"request", 3}}}}));
 }
 
-TEST(OwnStart, MalformedRepliesConfirmNothing) {
+TEST(OwnStart, MalformedRepliesConfirmNoStopAndRefuseNoStart) {
   for (const char* reply :
        {"{}", R"({"ok":1})", R"({"ok":"true"})", R"({"ok":false,"error":7})", R"({"ok":false,"error":{}})",
         R"({"ok":false,"error":{"refusal":[]}})", R"({"ok":false,"error":{"refusal":{"name":12}}})"}) {

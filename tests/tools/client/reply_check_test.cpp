@@ -64,7 +64,7 @@ void read(const Json& line) {
   static_cast<void>(names_of_sequences(result->value("sequences", Json::array())));
 }
 
-TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
+TEST(ReplyCheck, AcceptsEveryKindOfReplyAndAdditionalKeys) {
   for (const Json& line : testing::good_lines()) {
     const auto parsed = parse_reply(line.dump());
     ASSERT_TRUE(parsed) << parsed.error() << "\n" << line;
@@ -74,7 +74,7 @@ TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
   EXPECT_TRUE(parse_reply(R"({"id": 1, "ok": true, "more": [], "result": {"more": {"state": 3}}})"));
 }
 
-TEST(ReplyCheck, SaysWhatIsMalformed) {
+TEST(ReplyCheck, ErrorNamesTheMalformedKey) {
   EXPECT_EQ(error_of("{}"), "`ok` is missing");
   EXPECT_EQ(error_of("[]"), "a line is not a JSON object");
   EXPECT_EQ(error_of(R"({"ok":1})"), "`ok` has the wrong type");
@@ -88,7 +88,7 @@ TEST(ReplyCheck, SaysWhatIsMalformed) {
   EXPECT_EQ(error_of(R"({"ok":true,"result":{"request":1e999}})"), "a line is not JSON in UTF-8");
 }
 
-TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
+TEST(ReplyCheck, RefusesMoreThan32NestingLevelsBeforeParsing) {
   const auto nested = [](std::size_t depth) {
     return R"({"ok":true,"result":{"a":)" + std::string(depth, '[') + std::string(depth, ']') + "}}";
   };
@@ -102,7 +102,7 @@ TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
 
 /// In a line of each kind, replaces each value by values of all other JSON types. Either the check must
 /// refuse the changed line, or each function that reads this kind of line must accept it.
-TEST(ReplyCheck, WhatPassesBreaksNoReader) {
+TEST(ReplyCheck, EveryAcceptedReplyIsReadWithoutException) {
   std::size_t refused = 0;
   std::size_t passed = 0;
   for (const Json& good : testing::good_lines()) {
@@ -121,7 +121,7 @@ TEST(ReplyCheck, WhatPassesBreaksNoReader) {
 const auto json = nlohmann::ordered_json::parse(
     R"({"text": "a\u0007b", "long": "abcdefgh", "number": 2.5, "null": null, "object": {"in": 1}})");
 
-TEST(JsonFields, OfAnotherKindAreAsGoodAsMissing) {
+TEST(JsonFields, AFieldOfAnotherTypeIsReadAsMissing) {
   EXPECT_EQ(number_at(json, "number"), 2.5);
   for (const char* key : {"text", "null", "object", "nowhere"}) {
     EXPECT_EQ(number_at(json, key), std::nullopt) << key;
@@ -132,7 +132,7 @@ TEST(JsonFields, OfAnotherKindAreAsGoodAsMissing) {
   for (const char* key : {"number", "null", "object", "nowhere"}) EXPECT_EQ(text_at(json, key), "-") << key;
 }
 
-TEST(JsonFields, ATextIsFitForATerminal) {
+TEST(JsonFields, TextIsShortenedAndHasNoControlCharacters) {
   const std::string text = text_at(json, "text");
   EXPECT_EQ(text.find('\a'), std::string::npos) << text;
   EXPECT_LT(text_at(json, "long", 4).find("abc"), 2U);

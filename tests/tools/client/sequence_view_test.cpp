@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(SequenceView, SaysWhatAStartMayChoose) {
+TEST(SequenceView, ListsParametersWithRangesAndTheProblemsOfSequences) {
   const Json sequences = Json::parse(R"([
     {"name": "pick", "about": "closes", "problems": [], "parameters": [
       {"name": "squeeze_kpa", "unit": "kpa", "lower": 3, "upper": 10, "default": 5, "about": "how hard"},

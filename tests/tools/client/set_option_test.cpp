@@ -8,14 +8,14 @@
 namespace softgrip::tools::set_option_test {
 namespace {
 
-TEST(SetOption, TakesNamesAndNumbers) {
+TEST(SetOption, AcceptsNamesWithNumbers) {
   const auto arguments = arguments_of({"squeeze_kpa=4", "hold_s=-0.5e1"});
   ASSERT_TRUE(arguments);
   EXPECT_EQ(*arguments, (std::vector<control::Argument>{{"squeeze_kpa", 4}, {"hold_s", -5}}));
   EXPECT_EQ(json_of(*arguments).dump(), R"({"squeeze_kpa":4.0,"hold_s":-5.0})");
 }
 
-TEST(SetOption, RefusesWhatIsNone) {
+TEST(SetOption, RefusesMalformedAndRepeatedSettings) {
   for (const char* setting : {"squeeze_kpa", "=4", "squeeze_kpa=", "squeeze_kpa=fast", "squeeze_kpa=4,5",
                               "squeeze_kpa=4 kPa", "squeeze_kpa=nan", "squeeze_kpa=1e999"}) {
     ::testing::internal::CaptureStderr();
@@ -31,7 +31,7 @@ TEST(SetOption, RefusesWhatIsNone) {
   EXPECT_FALSE(arguments_of({"a=1", "a=1"}));
 }
 
-TEST(SetOption, LeavesTheNextWordAlone) {
+TEST(SetOption, TakesOneSettingPerOption) {
   CLI::App program;
   std::vector<std::string> settings;
   std::string sequence;

@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-TEST(StatusView, PressureThatStaysOnIsSaidFirstAndCompletely) {
+TEST(StatusView, ShowsResidualPressureFirstAndInFull) {
   Json pressed = status();
   pressed["state"] = "idle";
   pressed["under_pressure"] = {
@@ -53,7 +53,7 @@ TEST(StatusView, PressureThatStaysOnIsSaidFirstAndCompletely) {
   EXPECT_NE(line_of_status(pressed).find("idle, UNDER PRESSURE"), std::string::npos);
 }
 
-TEST(StatusView, ATemperatureStandsThereWhereItIsMeasured) {
+TEST(StatusView, ShowsATemperatureOnlyIfMeasured) {
   Json warm = status();
   EXPECT_EQ(joined(view_of(warm, {80, false, false})).find(" C\n"), std::string::npos);
   warm["channels"][1]["temperature_c"] = 23.46;
@@ -61,7 +61,7 @@ TEST(StatusView, ATemperatureStandsThereWhereItIsMeasured) {
   EXPECT_NE(text.find("12.25 mm, reference 12.50, error 0.25, 23.5 C\n"), std::string::npos) << text;
 }
 
-TEST(StatusView, AReadingThatWasNeverThereIsNotZero) {
+TEST(StatusView, ShowsAMissingReadingAsADash) {
   Json blind = status();
   blind["channels"][0]["displacement_mm"] = nullptr;
   blind["channels"][0]["reference_mm"] = nullptr;
@@ -72,7 +72,7 @@ TEST(StatusView, AReadingThatWasNeverThereIsNotZero) {
   EXPECT_NE(text.find("reading none_yet  model"), std::string::npos) << text;
 }
 
-TEST(StatusView, ALimitThatBindsIsALine) {
+TEST(StatusView, ShowsAnActiveLimitAndTheGrippingPressure) {
   Json bound = status();
   bound["channels"][0]["limit"] = "rig_pressure";
   bound["channels"][0]["limit_text"] = "pressure_max_kpa of the rig limits the pressure";
@@ -97,7 +97,7 @@ std::size_t columns_of(const std::string& line) {
   return columns;
 }
 
-TEST(StatusView, IsGoldenInPlainText) {
+TEST(StatusView, PlainTextMatchesTheReference) {
   EXPECT_EQ(joined(view_of(status(), {100, false, false})),
             R"(softgrip bench  running  pick_stone: step 3/4 hold  12.3 s
 
@@ -125,12 +125,12 @@ TEST(StatusView, NoLineIsLongerThanTheTerminal) {
   }
 }
 
-TEST(StatusView, ColoursOnlyWhenAsked) {
+TEST(StatusView, UsesColoursOnlyIfRequested) {
   EXPECT_EQ(joined(view_of(status(), {80, false, false})).find('\x1b'), std::string::npos);
   EXPECT_NE(joined(view_of(status(), {80, true, false})).find("\x1b[32m"), std::string::npos);
 }
 
-TEST(StatusView, AFaultComesWithItsRemedy) {
+TEST(StatusView, ShowsAFaultWithCauseAndRemedy) {
   Json faulted = status();
   faulted["state"] = "faulted";
   faulted["fault"] = {{"code", "F101"},
@@ -145,7 +145,7 @@ TEST(StatusView, AFaultComesWithItsRemedy) {
   EXPECT_NE(line_of_status(faulted).find("faulted F101"), std::string::npos);
 }
 
-TEST(StatusView, AFaultNamesItsFingerAndSaysWhatClearsIt) {
+TEST(StatusView, AFaultNamesTheChannelAndTheCommandThatClearsIt) {
   Json faulted = status();
   faulted["state"] = "faulted";
   faulted["fault"] = {{"code", "F202"},
@@ -165,7 +165,7 @@ TEST(StatusView, AFaultNamesItsFingerAndSaysWhatClearsIt) {
   EXPECT_NE(line_of_status(faulted).find("faulted F202 of left"), std::string::npos);
 }
 
-TEST(StatusView, ABoardThatNeverAnsweredSaysWhatIsTriedAndHowOften) {
+TEST(StatusView, ShowsConnectionAttemptsToABoardThatDoesNotRespond) {
   Json away = status();
   away["bus"] = {{"board", "ADAM-6024 at 127.0.0.1:1502 unit 1"},
                  {"connected", false},
@@ -194,7 +194,7 @@ std::string words_at(std::size_t columns, const Json& shown) {
   return text;
 }
 
-TEST(StatusView, NothingIsLostAtSixtyColumns) {
+TEST(StatusView, ShowsAllPhrasesAtSixtyColumns) {
   Json full = status();
   for (Json& each : full["channels"]) {
     each["squeeze_kpa"] = 5.0;
@@ -208,14 +208,14 @@ TEST(StatusView, NothingIsLostAtSixtyColumns) {
   }
 }
 
-TEST(StatusView, AnOrdinaryFingerTakesThreeLinesOfEightyColumns) {
+TEST(StatusView, AChannelFitsIntoThreeLinesOfEightyColumns) {
   Json holding = status();
   holding["channels"][0]["slewing"] = false;
   const std::vector<ChannelTrends> trends(2);
   EXPECT_EQ(parts_of(holding, {80, false, false}, &trends).channels[0].size(), 3U);
 }
 
-TEST(StatusView, WhatCannotBeBrokenIsCutWithASign) {
+TEST(StatusView, MarksALongWordThatIsCutOff) {
   Json deep = status();
   deep["recording"]["folder"] = std::string(80, 'x');
   for (const std::string& line : view_of(deep, {60, false, false})) {
@@ -225,7 +225,7 @@ TEST(StatusView, WhatCannotBeBrokenIsCutWithASign) {
   EXPECT_NE(joined(view_of(deep, {60, false, true})).find("x…\n"), std::string::npos);
 }
 
-TEST(StatusView, WhatIsUnknownIsADash) {
+TEST(StatusView, ShowsUnknownValuesAsDashesAndToleratesMalformedStatus) {
   Json unknown = status();
   for (Json& each : unknown["channels"]) {
     each["pressure_kpa"] = nullptr;
@@ -243,7 +243,7 @@ TEST(StatusView, WhatIsUnknownIsADash) {
   }
 }
 
-TEST(StatusView, ATextFromTheWireCannotReachTheTerminal) {
+TEST(StatusView, RemovesControlCharactersFromReceivedText) {
   Json hostile = status();
   hostile["rig"] = "\x1b[2Jboo";
   hostile["channels"][0]["name"] = "a\nb";
@@ -252,7 +252,7 @@ TEST(StatusView, ATextFromTheWireCannotReachTheTerminal) {
   EXPECT_EQ(text.find("a\nb"), std::string::npos);
 }
 
-TEST(StatusView, OneLineSaysWhatMatters) {
+TEST(StatusView, OneLineSummarisesStateCommandAndReadingOfEachChannel) {
   EXPECT_EQ(line_of_status(status()),
             "12.35 s  running  left 30.00 kPa 12.25 mm of 12.50 HOLDING  right 30.00 kPa 12.25 mm of 12.50 "
             "HOLDING");

@@ -7,7 +7,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(StyledLine, WhatFitsIsWholeAndWhatDoesNotHasASign) {
+TEST(StyledLine, MarksALineThatIsCutOff) {
   const ViewStyle ten{10, false, false};
   EXPECT_EQ(Line(ten).add("0123456789").text(), "0123456789");
   EXPECT_EQ(Line(ten).add("01234").add("56789a").text(), "012345678>");
@@ -15,7 +15,7 @@ TEST(StyledLine, WhatFitsIsWholeAndWhatDoesNotHasASign) {
   EXPECT_EQ(Line(unicode).add("0123456789a").text(), "012345678…");
 }
 
-TEST(StyledLine, GlyphsAndEscapesTakeNoMoreColumnsThanTheyShow) {
+TEST(StyledLine, EscapeSequencesAndGlyphBytesOccupyNoColumns) {
   const ViewStyle three{3, true, true};
   EXPECT_EQ(Line(three).add_glyph("▁").add_glyph("▂").add("x", Tone::bad).text(), "▁▂\x1b[1;31mx\x1b[0m");
   EXPECT_EQ(Line(three).add_glyph("▁").add_glyph("▂").add_glyph("▃").add_glyph("▄").text(),

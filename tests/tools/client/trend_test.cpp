@@ -11,7 +11,7 @@ std::string joined(const std::vector<std::string>& glyphs) {
   return text;
 }
 
-TEST(Trend, HasAColumnPerSecondFromLowestToHighest) {
+TEST(Trend, DrawsAColumnPerSecondScaledToTheVisibleRange) {
   Trend trend;
   for (int tenths = 0; tenths < 80; ++tenths) trend.add(100 + tenths / 10.0, static_cast<int>(tenths / 10));
   EXPECT_EQ(joined(trend.glyphs(20, 1, true)), "▁▂▃▄▅▆▇█");
@@ -20,7 +20,7 @@ TEST(Trend, HasAColumnPerSecondFromLowestToHighest) {
       << "the scale of the trend must be that of the newest values";
 }
 
-TEST(Trend, NoiseIsNoMotion) {
+TEST(Trend, DrawsNoiseBelowTheSmallestRangeAsAFlatLine) {
   Trend trend;
   for (int second = 0; second < 5; ++second) trend.add(second, second % 2 == 0 ? 0.0 : 0.1);
   EXPECT_EQ(joined(trend.glyphs(20, 6, false)), "_____");
@@ -36,7 +36,7 @@ TEST(Trend, ASecondWithoutAValueIsAGap) {
   EXPECT_EQ(trend.glyphs(1000, 1, false).size(), Trend::seconds_kept);
 }
 
-TEST(Trend, AnotherDaemonBeginsAnew) {
+TEST(Trend, RestartsIfTimeGoesBackwards) {
   Trend trend;
   trend.add(500, 1);
   trend.add(501, 2);

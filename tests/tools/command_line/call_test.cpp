@@ -7,7 +7,7 @@
 namespace softgrip::tools::call_test {
 namespace {
 
-TEST(Call, IsWhatWasGivenButWhereTheOutputGoes) {
+TEST(Call, ListsTheGivenOptionsWithoutThoseForTheOutput) {
   CLI::App program;
   CLI::App* command = program.add_subcommand("fit", "");
   std::vector<std::string> data;

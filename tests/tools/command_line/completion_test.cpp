@@ -54,7 +54,7 @@ class Completion : public ::testing::Test {
   bool flag_ = false;
 };
 
-TEST_F(Completion, BashOffersWhatTheProgramHas) {
+TEST_F(Completion, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(offered({"tool", "s"}), "start study");
   EXPECT_EQ(offered({"tool", "events", "--"}), "--help --lines --severity --json");
   EXPECT_EQ(offered({"tool", "events", "--severity", ""}), "warning error");
@@ -77,7 +77,7 @@ TEST_F(Completion, OtherShellsGetTheSameWords) {
   EXPECT_NE(fish.find("-a events -d 'What it\\'s [about]: all'"), std::string::npos) << fish;
 }
 
-TEST(ShellNamed, KnowsThree) {
+TEST(ShellNamed, FindsZshAndRefusesCsh) {
   EXPECT_EQ(shell_named("zsh"), Shell::zsh);
   EXPECT_FALSE(shell_named("csh"));
 }

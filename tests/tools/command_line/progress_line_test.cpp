@@ -8,14 +8,14 @@
 namespace softgrip::tools::progress_line_test {
 namespace {
 
-TEST(RestEstimate, IsWhatTheStageTookSoFar) {
+TEST(RestEstimate, ExtrapolatesTheTimePerStep) {
   RestEstimate estimate;
   EXPECT_LT(estimate.left_s("start 1 of 20", 10), 0) << "no estimate of the remaining time is possible yet";
   EXPECT_NEAR(estimate.left_s("start 6 of 20, best RMSE 0.3 mm", 15), 14, 1e-9);
   EXPECT_NEAR(estimate.left_s("start 20 of 20", 29), 0, 1e-9);
 }
 
-TEST(RestEstimate, AnotherWholeOrASmallerNumberIsAnotherStage) {
+TEST(RestEstimate, RestartsAtANewTotalOrASmallerNumber) {
   RestEstimate estimate;
   (void)estimate.left_s("start 1 of 20", 0);
   (void)estimate.left_s("start 11 of 20", 10);
@@ -32,7 +32,7 @@ std::string text_of(std::FILE* file) {
   return {buffer.data(), std::fread(buffer.data(), 1, buffer.size(), file)};
 }
 
-TEST(ProgressLine, WhereThereIsNoTerminalALineNowAndThenSaysHowFarItIs) {
+TEST(ProgressLine, PrintsPlainLinesAtIntervalsIfTheOutputIsNoTerminal) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
   {
     ProgressLine line(file.get(), std::chrono::milliseconds(20));
@@ -51,7 +51,7 @@ TEST(ProgressLine, WhereThereIsNoTerminalALineNowAndThenSaysHowFarItIs) {
   EXPECT_EQ(text.find('\033'), std::string::npos);
 }
 
-TEST(ProgressLine, ShortWorkIsSilent) {
+TEST(ProgressLine, PrintsNothingForShortWork) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
   {
     ProgressLine line(file.get());

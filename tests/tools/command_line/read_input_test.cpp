@@ -41,7 +41,7 @@ TEST(ReadInput, PrintsTheProblemsOfARefusedFile) {
   EXPECT_EQ(read.error(), ExitCode::input_refused);
 }
 
-TEST(ReadInput, DoesNotReadAFileThatCannotBeOpened) {
+TEST(ReadInput, ReportsAFileThatCannotBeOpenedAsAnIoError) {
   const daemon::testing::TemporaryFolder folder;
   ::testing::internal::CaptureStderr();
   const auto read = read_input(folder.path() + "/none.txt", refused);

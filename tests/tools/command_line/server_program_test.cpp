@@ -32,7 +32,7 @@ ExitCode must_not_run(const GatewayOptions&) {
   return ExitCode::done;
 }
 
-TEST(ServerProgram, RunsWithItsOptionsAndReturnsTheCode) {
+TEST(ServerProgram, PassesTheOptionsAndReturnsTheExitCode) {
   std::optional<GatewayOptions> seen;
   EXPECT_EQ(run_with({"--config", "a.yaml", "--port", "502", "--check"},
                      [&](const GatewayOptions& options) {
@@ -56,14 +56,14 @@ TEST(ServerProgram, DoesNotRunForAVersionOrAWrongCommandLine) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("did you mean `--port`?"), std::string::npos);
 }
 
-TEST(ServerProgram, ReportsAnExceptionUnderItsName) {
+TEST(ServerProgram, PrintsAnExceptionWithTheNameOfTheProgram) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(run_with({}, [](const GatewayOptions&) -> ExitCode { throw std::runtime_error("no memory"); }),
             static_cast<int>(ExitCode::failed));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "server: no memory\n");
 }
 
-TEST(ServerProgram, TakesTheSignalsThatEndAServerAndThoseItIsGiven) {
+TEST(ServerProgram, ReceivesTerminationAndAdditionalSignalsAndIgnoresSigpipe) {
   const auto pipe_before = std::signal(SIGPIPE, SIG_DFL);
   sigset_t before;
   ::sigprocmask(SIG_BLOCK, nullptr, &before);

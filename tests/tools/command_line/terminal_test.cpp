@@ -7,7 +7,7 @@
 namespace softgrip::tools::terminal_test {
 namespace {
 
-TEST(Terminal, WhatIsNoAsciiHasAStandInWhereTheLocaleIsNotUtf8) {
+TEST(Terminal, ReplacesNonAsciiCharactersWithoutAUtf8Locale) {
   const std::string text = "13 ± 7 mm, ±5 %";
   ::setenv("LC_ALL", "C.UTF-8", 1);
   EXPECT_EQ(on_screen(text), text);

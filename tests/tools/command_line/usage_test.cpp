@@ -36,7 +36,7 @@ Said said_of(std::vector<std::string> words) {
   return said;
 }
 
-TEST(Usage, AMistypedCommandIsNamedWithTheNearest) {
+TEST(Usage, SuggestsTheNearestCommandForAMistypedOne) {
   const Said said = said_of({"statsu"});
   EXPECT_EQ(said.code, 2);
   EXPECT_NE(said.text.find("there is no command `statsu`; did you mean `status`?"), std::string::npos)
@@ -45,7 +45,7 @@ TEST(Usage, AMistypedCommandIsNamedWithTheNearest) {
   EXPECT_NE(said_of({"statsu", "--json"}).text.find("did you mean `status`?"), std::string::npos);
 }
 
-TEST(Usage, AMistypedOptionIsNamedWithTheNearestOfItsCommand) {
+TEST(Usage, SuggestsTheNearestOptionOfTheCommand) {
   const Said said = said_of({"status", "--jsno"});
   EXPECT_EQ(said.code, 2);
   EXPECT_NE(said.text.find("--jsno: did you mean `--json`?"), std::string::npos) << said.text;

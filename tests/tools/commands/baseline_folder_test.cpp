@@ -26,7 +26,7 @@ class BaselineFolder : public ::testing::Test {
   BaselineContents contents_;
 };
 
-TEST_F(BaselineFolder, WhatIsWrittenIsReadBack) {
+TEST_F(BaselineFolder, ReturnsTheWrittenLogs) {
   ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
   const auto baseline = sysid::read_baseline(folder_ + "/base");
   ASSERT_TRUE(baseline) << baseline.error();
@@ -36,7 +36,7 @@ TEST_F(BaselineFolder, WhatIsWrittenIsReadBack) {
   EXPECT_TRUE(baseline->gauge.empty());
 }
 
-TEST_F(BaselineFolder, TheSecondRunAndTheGaugeAreKeptAndWatchedOver) {
+TEST_F(BaselineFolder, ChecksTheIntegrityOfTheSecondRunAndTheGaugeFile) {
   contents_.second = {{"again.csv", "another log\n"}};
   contents_.gauge = BaselineFile{"blocks.csv", "gauge_mm,displacement_mm\n"};
   for (const char* const name : {"second_1.csv", "gauge.csv"}) {
@@ -53,7 +53,7 @@ TEST_F(BaselineFolder, TheSecondRunAndTheGaugeAreKeptAndWatchedOver) {
   }
 }
 
-TEST_F(BaselineFolder, WhatCannotBeWrittenWholeLeavesNothing) {
+TEST_F(BaselineFolder, WritingLeavesNoTemporaryFolder) {
   ASSERT_TRUE(write_file(folder_ + "/file", "no folder"));
   EXPECT_FALSE(write_baseline(folder_ + "/file/base", contents_, {{"schema", 1}}));
   ASSERT_TRUE(write_baseline(folder_ + "/base/", contents_, {{"schema", 1}}));
@@ -62,7 +62,7 @@ TEST_F(BaselineFolder, WhatCannotBeWrittenWholeLeavesNothing) {
   EXPECT_EQ(entries, 3U) << "expected: tp1.csv, file and base";
 }
 
-TEST_F(BaselineFolder, WhatWasChangedIsRefusedByName) {
+TEST_F(BaselineFolder, RefusalNamesTheModifiedFile) {
   ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
   ASSERT_TRUE(write_file(folder_ + "/base/model.yaml", "another"));
   const auto baseline = sysid::read_baseline(folder_ + "/base");
@@ -70,14 +70,14 @@ TEST_F(BaselineFolder, WhatWasChangedIsRefusedByName) {
   EXPECT_NE(baseline.error().find("model.yaml"), std::string::npos) << baseline.error();
 }
 
-TEST_F(BaselineFolder, AnotherFilesJsonIsRefused) {
+TEST_F(BaselineFolder, RefusesAMalformedBaselineFile) {
   for (const char* const text : {"", "[]", "{\"logs\": 3}", "{\"logs\": [{}], \"model\": {}}"}) {
     ASSERT_TRUE(write_file(folder_ + "/baseline.json", text));
     EXPECT_FALSE(sysid::read_baseline(folder_)) << text;
   }
 }
 
-TEST_F(BaselineFolder, AChangeOfNothingIsRefused) {
+TEST_F(BaselineFolder, ChangeWithoutLogsIsRefused) {
   EXPECT_EQ(run_change({{}, {}, {}, {}, folder_, {}, {}, true}), ExitCode::input_refused);
 }
 

@@ -78,7 +78,7 @@ TEST(Check, RefusesEveryBrokenConfigurationWithAllOfItsErrors) {
   }
 }
 
-TEST(Check, SaysTheSameInJson) {
+TEST(Check, JsonReportsProblemsAtTheSamePositions) {
   for (const std::string& name : names()) {
     const Outcome outcome = check("--json " + arguments_of(name));
     EXPECT_EQ(outcome.exit_code, 3) << name;
@@ -95,7 +95,7 @@ TEST(Check, SaysTheSameInJson) {
   }
 }
 
-TEST(Check, AcceptsWhatIsShipped) {
+TEST(Check, AcceptsEveryShippedConfiguration) {
   const Outcome outcome = check(
       "../../config/rig.yaml ../../config/rig_tcp.yaml ../../config/boards/*.yaml "
       "../../config/models/*.yaml ../../config/sequences/*.yaml");
@@ -111,13 +111,13 @@ TEST(Check, RefusesAFileThatIsTooLarge) {
   EXPECT_NE(outcome.errors.find("the file is larger than 262144 bytes"), std::string::npos) << outcome.errors;
 }
 
-TEST(Check, AFileThatIsNotThereIsNotAConfigurationRefused) {
+TEST(Check, AMissingFileIsReportedAsAnIoError) {
   const Outcome outcome = check("absent.yaml");
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_NE(outcome.errors.find("absent.yaml:1:1: the file cannot be read"), std::string::npos);
 }
 
-TEST(Check, NeedsAFile) {
+TEST(Check, MissingFileArgumentIsAUsageError) {
   EXPECT_EQ(check("").exit_code, 2);
 }
 

@@ -13,14 +13,14 @@ namespace {
 const std::string simulated = SOFTGRIP_SOURCE_DIR "/config/rig.yaml";
 const std::string real = SOFTGRIP_SOURCE_DIR "/config/rig_tcp.yaml";
 
-TEST(RigToMove, ASimulatedOneIsNobodyElses) {
+TEST(RigToMove, ASimulatedRigNeedsNoConsent) {
   const auto rig = rig_to_move(simulated, "right", false);
   ASSERT_TRUE(rig);
   EXPECT_TRUE(rig->simulated);
   EXPECT_EQ(rig->channel_name(), "right");
 }
 
-TEST(RigToMove, WhatStandsInTheWayHasItsExitCode) {
+TEST(RigToMove, EveryRefusalHasASpecificExitCode) {
   EXPECT_EQ(rig_to_move("nowhere.yaml", "", true).error(), ExitCode::io);
   EXPECT_EQ(rig_to_move(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", "", true).error(),
             ExitCode::input_refused);
@@ -42,7 +42,7 @@ TEST(RigToMove, PrintsTheWarningsOfTheFile) {
             std::string::npos);
 }
 
-TEST(RigToMove, ABoardThatAnotherProgramHoldsIsNotTaken) {
+TEST(RigToMove, RefusesABoardLockedByAnotherProgram) {
   document::Problems problems;
   const auto file = rig::load_rig(real, problems);
   ASSERT_TRUE(file);
@@ -55,7 +55,7 @@ TEST(RigToMove, ABoardThatAnotherProgramHoldsIsNotTaken) {
   EXPECT_TRUE(daemon::BoardLock::take(*file));
 }
 
-TEST(RigToMove, WhoSaidYesIsNotAsked) {
+TEST(RigToMove, TheYesOptionGivesConsentWithoutAQuestion) {
   EXPECT_TRUE(consent_on_terminal(true)("it will move"));
 }
 

@@ -7,7 +7,7 @@
 namespace softgrip::tools::series_output_test {
 namespace {
 
-TEST(SeriesOutput, ALogThatIsGivenTwiceHasTwoFolders) {
+TEST(SeriesOutput, WritesTwoFoldersForALogGivenTwice) {
   const auto folder = std::filesystem::temp_directory_path() / "softgrip_series_output_test";
   sysid::LogSeries series;
   series.name = "tp1";

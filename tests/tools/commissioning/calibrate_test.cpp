@@ -36,7 +36,7 @@ std::vector<Visit> visits() {
 }
 constexpr Demands demands{1, 0.2};
 
-TEST(FitLine, FindsSlopeSignResidualsAndSpread) {
+TEST(FitLine, ReturnsSlopeResidualsRepeatabilityAndNoise) {
   const auto line = fit_line(visits(), demands, "mm", "V");
   ASSERT_TRUE(line) << line.error();
   EXPECT_NEAR(line->slope, -2, 1e-12);
@@ -48,7 +48,7 @@ TEST(FitLine, FindsSlopeSignResidualsAndSpread) {
   EXPECT_NEAR(line->noise, 0.004, 1e-12);
 }
 
-TEST(FitLine, WithoutRepetitionTheSpreadIsNotKnown) {
+TEST(FitLine, ReturnsNoRepeatabilityWithoutRepetition) {
   std::vector<Visit> two = visits();
   two.resize(2);
   const auto line = fit_line(two, demands, "mm", "V");
@@ -57,7 +57,7 @@ TEST(FitLine, WithoutRepetitionTheSpreadIsNotKnown) {
   EXPECT_NEAR(line->residuals[0], 0, 1e-12);
 }
 
-TEST(FitLine, RefusesNonsenseAndSaysWhy) {
+TEST(FitLine, RefusesUnusableVisitsAndStatesTheReason) {
   const auto why = [](const std::function<void(std::vector<Visit>&)>& spoil) {
     std::vector<Visit> list = visits();
     spoil(list);
@@ -75,7 +75,7 @@ TEST(FitLine, RefusesNonsenseAndSaysWhy) {
   EXPECT_NE(why([](auto& list) { list.resize(1); }).find("two different positions"), std::string::npos);
 }
 
-TEST(FindDeadZone, FindsABendInNoise) {
+TEST(FindDeadZone, FindsTheEndAndGainOfANoisyDeadZone) {
   constexpr std::uint64_t seed = 7;
   SCOPED_TRACE(seed);
   std::mt19937_64 random(seed);
@@ -93,7 +93,7 @@ TEST(FindDeadZone, FindsABendInNoise) {
   EXPECT_NEAR(zone->gain, 1, 0.02);
 }
 
-TEST(FindDeadZone, DoesNotInventOne) {
+TEST(FindDeadZone, ReportsNoDeadZoneForAProportionalResponse) {
   std::mt19937_64 random(8);
   std::normal_distribution<double> noise(0, 0.1);
   std::vector<double> command;
@@ -180,7 +180,7 @@ class CalibrateTest : public ::testing::Test {
   std::unique_ptr<MotionSession> session_;
 };
 
-TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
+TEST_F(CalibrateTest, RecoversTheSensorScalingWithinTheStatedError) {
   for (const drivers::TwoPoints& truth :
        {drivers::TwoPoints{0, -5, 10, 45}, drivers::TwoPoints{0.5, 45, 9.5, -5}}) {
     time_.clock.set(1'000'000'000);
@@ -200,7 +200,7 @@ TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
   }
 }
 
-TEST_F(CalibrateTest, RecoversTheValveAgainstTheMonitorAndAgainstAManometer) {
+TEST_F(CalibrateTest, RecoversTheValveScalingByMonitorAndByManometer) {
   make();
   KnowingOperator person([this] { return truth_kpa(); });
   for (const bool by_monitor : {true, false}) {
@@ -215,7 +215,7 @@ TEST_F(CalibrateTest, RecoversTheValveAgainstTheMonitorAndAgainstAManometer) {
   }
 }
 
-TEST_F(CalibrateTest, FindsNoDeadZoneWhereThereIsNone) {
+TEST_F(CalibrateTest, FindsNoDeadZoneInAnIdealValve) {
   make();
   KnowingOperator person([] { return ""; });
   const auto result = search_dead_zone(rig_, *session_, person, settings_);
@@ -238,7 +238,7 @@ TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
 }
 
 /// If the sensor that measures the motion of a finger gives no reading, no procedure may move this finger.
-TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
+TEST_F(CalibrateTest, DoesNotRaiseThePressureWithoutTheRequiredSensor) {
   using Procedure = std::function<std::optional<Refusal>(MotionSession&, Operator&)>;
   const auto refusal = [](const auto& result) {
     return result ? std::nullopt : std::optional<Refusal>(result.error());
@@ -281,7 +281,7 @@ TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
   }
 }
 
-TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {
+TEST_F(CalibrateTest, RefusesAStuckDisplacementSensor) {
   simulation::SimulatedEvent stuck;
   stuck.kind = simulation::SimulatedEvent::Kind::sensor_fault;
   stuck.sensor.kind = simulation::SensorFault::Kind::stuck;
@@ -293,7 +293,7 @@ TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {
   EXPECT_NE(line.error().text.find("changes too little"), std::string::npos) << line.error().text;
 }
 
-TEST_F(CalibrateTest, AnAnswerThatIsNoNumberIsRefusedAndTheRigIsSafe) {
+TEST_F(CalibrateTest, RefusesANonNumericAnswerAndVents) {
   make();
   KnowingOperator person([] { return "about ten"; });
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
@@ -303,7 +303,7 @@ TEST_F(CalibrateTest, AnAnswerThatIsNoNumberIsRefusedAndTheRigIsSafe) {
   EXPECT_EQ(board_->plant(0).held_command_kpa(), 0);
 }
 
-TEST_F(CalibrateTest, StoppedOnTheWayItVents) {
+TEST_F(CalibrateTest, VentsIfStoppedByTheUser) {
   time_.stop_at = 4'000'000'000;
   make();
   KnowingOperator person([this] { return truth_mm(); });
@@ -325,7 +325,7 @@ TEST_F(CalibrateTest, NeverCommandsBeyondTheLimits) {
   EXPECT_LE(highest, 60);
 }
 
-TEST_F(CalibrateTest, ByHandNothingMoves) {
+TEST_F(CalibrateTest, ManualSensorCalibrationDoesNotMoveTheFinger) {
   settings_.may_move = false;
   make();
   double place = 2;
@@ -340,7 +340,7 @@ TEST_F(CalibrateTest, ByHandNothingMoves) {
   EXPECT_NE(person.asked.front().find("put the target"), std::string::npos);
 }
 
-TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
+TEST_F(CalibrateTest, ReadsGaugePositionsFromTheOperatorWithoutMotion) {
   make();
   int answered = 0;
   KnowingOperator person([&]() -> std::string {
@@ -362,7 +362,7 @@ TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
   EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
 }
 
-TEST_F(CalibrateTest, AGaugePositionThatTheSensorDoesNotSeeIsLeftOut) {
+TEST_F(CalibrateTest, SkipsAGaugePositionWithoutAValidReading) {
   simulation::SimulatedEvent blind;
   blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
   blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
@@ -375,7 +375,7 @@ TEST_F(CalibrateTest, AGaugePositionThatTheSensorDoesNotSeeIsLeftOut) {
   EXPECT_NE(person.told.front().find("skipped"), std::string::npos);
 }
 
-TEST_F(CalibrateTest, AGaugeCheckStopsWhenAsked) {
+TEST_F(CalibrateTest, AGaugeCheckStopsOnRequest) {
   time_.stop_at = 4'000'000'000;
   make();
   KnowingOperator person([] { return ""; });
@@ -384,7 +384,7 @@ TEST_F(CalibrateTest, AGaugeCheckStopsWhenAsked) {
   EXPECT_EQ(visits.error().text, "stopped by the user");
 }
 
-TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
+TEST_F(CalibrateTest, TheSnippetIsAcceptedInARigFile) {
   make();
   KnowingOperator person([this] { return truth_mm(); });
   Results results;
@@ -414,7 +414,7 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
   EXPECT_NEAR(rig->wiring[0].displacement.scaling.y_at(5), results.sensor->points.y_at(5), 1e-3);
 }
 
-TEST_F(CalibrateTest, TellsWhenLessThanAFifthOfTheValveIsUsed) {
+TEST_F(CalibrateTest, WarnsIfLessThanAFifthOfTheValveRangeIsUsed) {
   rig_.valves[0].range_max_kpa = 500;
   EXPECT_NEAR(share_of_valve(rig_, 0), 0.12, 1e-12);
   EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}, {}}).find("less than 1/5"), std::string::npos);

@@ -60,14 +60,14 @@ class CrossingTest : public ::testing::Test {
   std::vector<ChannelSample> rest_;
 };
 
-TEST_F(CrossingTest, NothingIsCrossedOnAHealthyRigOrWhereSomethingIsDead) {
+TEST_F(CrossingTest, FindsNoSwapOnAHealthyRigOrWithAStuckSensor) {
   EXPECT_TRUE(find({{0, 1}, {0, 1}}).empty());
   EXPECT_TRUE(find({{0, -1}, {0, 1}}).empty()) << "one of the sensors is stuck";
   EXPECT_TRUE(find({{1, 1}, {0, 1}}).empty()) << "one sensor follows both fingers, so there is no swap";
   EXPECT_TRUE(find({{1, -1}, {0, 1}}).empty()) << "the responses do not form a swap of channels";
 }
 
-TEST_F(CrossingTest, TwoSensorsAreNamedByTheirInputs) {
+TEST_F(CrossingTest, ASwapOfTwoSensorsIsReportedWithTheInputs) {
   const auto crossings = find({{1, 0}, {0, 1}});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_EQ(crossings[0].kind, Crossing::Kind::sensors);
@@ -83,7 +83,7 @@ TEST_F(CrossingTest, TwoSensorsAreNamedByTheirInputs) {
   EXPECT_NE(finding.advice.find("under `sensor` in the rig file"), std::string::npos);
 }
 
-TEST_F(CrossingTest, TwoMonitorsAreNamedByTheirInputs) {
+TEST_F(CrossingTest, ASwapOfTwoPressureMonitorsIsReportedWithTheInputs) {
   const auto crossings = find({{0, 1}, {1, 0}});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_EQ(crossings[0].kind, Crossing::Kind::monitors);
@@ -93,14 +93,14 @@ TEST_F(CrossingTest, TwoMonitorsAreNamedByTheirInputs) {
       << finding.advice;
 }
 
-TEST_F(CrossingTest, WhereBothAreCrossedItIsTheValves) {
+TEST_F(CrossingTest, SwappedSensorsAndMonitorsTogetherMeanSwappedValves) {
   const auto crossings = find({{1, 0}, {1, 0}});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_EQ(crossings[0].kind, Crossing::Kind::valves);
   EXPECT_NE(told(crossings).advice.find("swap output 0 (`left`) and output 1 (`right`)"), std::string::npos);
 }
 
-TEST_F(CrossingTest, ThreeMayGoRound) {
+TEST_F(CrossingTest, FindsACyclicSwapOfThreeSensors) {
   const auto crossings = find({{1, 2, 0}, {0, 1, 2}});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_EQ(crossings[0].channels, (std::vector<std::size_t>{0, 1, 2}));
@@ -108,7 +108,7 @@ TEST_F(CrossingTest, ThreeMayGoRound) {
             std::string::npos);
 }
 
-TEST_F(CrossingTest, NeighboursOfACrossingAreNotPartOfIt) {
+TEST_F(CrossingTest, ASwapDoesNotIncludeCorrectlyConnectedChannels) {
   const auto crossings = find({{1, 0, 2}, {0, 1, 2}});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_FALSE(is_crossed(crossings, Crossing::Kind::sensors, 2));

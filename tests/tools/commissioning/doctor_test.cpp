@@ -121,7 +121,7 @@ class DoctorTest : public ::testing::Test {
   Findings findings_;
 };
 
-TEST_F(DoctorTest, AHealthyRigIsFit) {
+TEST_F(DoctorTest, AHealthyRigPassesAllChecks) {
   examine(true);
   EXPECT_EQ(findings_.worst(), Verdict::ok) << text_of({"", "", false, true}, findings_, 100, false);
   expect("board", Verdict::ok, "responds");
@@ -134,7 +134,7 @@ TEST_F(DoctorTest, AHealthyRigIsFit) {
   EXPECT_EQ(output_kpa(1), 0);
 }
 
-TEST_F(DoctorTest, WithoutConsentNothingMoves) {
+TEST_F(DoctorTest, DoesNotMoveTheFingersWithoutTheMoveOption) {
   double highest = 0;
   examine(false);
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
@@ -144,7 +144,7 @@ TEST_F(DoctorTest, WithoutConsentNothingMoves) {
   EXPECT_EQ(findings_.worst(), Verdict::ok);
 }
 
-TEST_F(DoctorTest, ABoardThatIsAwayIsAllThatIsSaid) {
+TEST_F(DoctorTest, AnUnreachableBoardIsTheOnlyFailure) {
   Event lost;
   lost.kind = Event::Kind::bus_lost;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
@@ -156,7 +156,7 @@ TEST_F(DoctorTest, ABoardThatIsAwayIsAllThatIsSaid) {
   expect_not_judged("sensor right", "the board does not respond");
 }
 
-TEST_F(DoctorTest, ABoardThatFallsSilentOnTheWay) {
+TEST_F(DoctorTest, ABoardLostDuringTheMotionFailsMotionAndSafeState) {
   Event silent;
   silent.kind = Event::Kind::bus_lost;
   silent.status = drivers::BusStatus::timed_out;
@@ -168,7 +168,7 @@ TEST_F(DoctorTest, ABoardThatFallsSilentOnTheWay) {
   expect("safe state", Verdict::fail, "did not confirm");
 }
 
-TEST_F(DoctorTest, AWatchdogThatIsMissing) {
+TEST_F(DoctorTest, WarnsOfAMissingWatchdog) {
   rig_.settings.safety.board_vents_when_silent = false;
   rig_.accept_no_watchdog = rig::no_watchdog_words;
   examine(true);
@@ -177,7 +177,7 @@ TEST_F(DoctorTest, AWatchdogThatIsMissing) {
 
 /// A request of any client resets the watchdog of this board. Some boards with this property report the
 /// number of their clients.
-TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
+TEST_F(DoctorTest, AWatchdogThatReadersFeedAndASecondClientCauseWarnings) {
   rig_.settings.safety.board_vents_when_silent = true;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   SharedBoard board(*board_);
@@ -200,14 +200,14 @@ TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   expect("clients", Verdict::ok, "number of clients at the board: 2");
 }
 
-TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
+TEST_F(DoctorTest, WithoutAWatchdogAStaticCheckDoesNotAccessTheBoard) {
   rig_.settings.safety.board_vents_when_silent = false;
   examine(false);
   expect("sensors", Verdict::warn, "the fingers may still hold a part");
   EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "no exchange with the board may take place";
 }
 
-TEST_F(DoctorTest, ASensorThatSeesNothing) {
+TEST_F(DoctorTest, ASensorThatIsOutOfRangeFails) {
   sensor_fault(SensorFault::Kind::out_of_range);
   examine(false);
   expect("sensor left", Verdict::fail, "out_of_range");
@@ -215,7 +215,7 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
 
 /// A finger without valid displacement readings could exceed its limits unnoticed. The command must therefore
 /// not move this finger. The command may move all other fingers.
-TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
+TEST_F(DoctorTest, ASensorThatIsOutOfRangePreventsTheMotionOfTheFinger) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
@@ -234,7 +234,7 @@ TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   EXPECT_EQ(findings_.count(Verdict::fail), 1U) << text_of({"", "", false, true}, findings_, 100, false);
 }
 
-TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
+TEST_F(DoctorTest, ASensorThatIsLostDuringTheMotionEndsTheMotion) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
@@ -252,7 +252,7 @@ TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
   EXPECT_EQ(output_kpa(0), 0);
 }
 
-TEST_F(DoctorTest, AChannelWithoutASensorIsSeenByItsMonitorOrNotMoved) {
+TEST_F(DoctorTest, AChannelWithoutASensorAndAPressureReadingIsNotMoved) {
   rig_.settings.channels[0].displacement_used = false;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   BlindMonitor blind(*board_);
@@ -263,7 +263,7 @@ TEST_F(DoctorTest, AChannelWithoutASensorIsSeenByItsMonitorOrNotMoved) {
   expect("finger right", Verdict::ok, "moved");
 }
 
-TEST_F(DoctorTest, AMonitorWithoutAValidReadingIsNamedAndTheFingerJudgedAlone) {
+TEST_F(DoctorTest, AFailedMonitorDoesNotPreventTheCheckOfTheFinger) {
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   BlindMonitor board(*board_);
   examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
@@ -273,7 +273,7 @@ TEST_F(DoctorTest, AMonitorWithoutAValidReadingIsNamedAndTheFingerJudgedAlone) {
   EXPECT_EQ(findings_.count(Verdict::fail), 1U);
 }
 
-TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
+TEST_F(DoctorTest, ASensorThatIsStuckFailsOnlyWhenTheFingerMoves) {
   sensor_fault(SensorFault::Kind::stuck);
   examine(false);
   expect("sensor left", Verdict::warn, "no variation");
@@ -284,7 +284,7 @@ TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
   EXPECT_NE(finding("finger left").advice.find("the pressure is present"), std::string::npos);
 }
 
-TEST_F(DoctorTest, AValveThatDoesNotFollow) {
+TEST_F(DoctorTest, ABlockedAirLineFailsTheValveCheck) {
   line_fault(LineFault::Kind::blocked);
   examine(true);
   expect("valve left", Verdict::fail, "15.00 kPa commanded");
@@ -295,13 +295,13 @@ TEST_F(DoctorTest, AValveThatDoesNotFollow) {
   EXPECT_EQ(output_kpa(0), 0);
 }
 
-TEST_F(DoctorTest, ALineThatLeaks) {
+TEST_F(DoctorTest, ALeakingAirLineFailsTheValveCheck) {
   line_fault(LineFault::Kind::leaking, 0.4);
   examine(true);
   expect("valve left", Verdict::fail, "commanded, 9");
 }
 
-TEST_F(DoctorTest, AnOutputThatCannotBeWritten) {
+TEST_F(DoctorTest, ARefusedWriteFailsTheMotion) {
   Event refused;
   refused.kind = Event::Kind::write_refused;
   refused.at_s = 1.5;
@@ -310,7 +310,7 @@ TEST_F(DoctorTest, AnOutputThatCannotBeWritten) {
   expect("motion left", Verdict::fail, "the output did not change to the written command");
 }
 
-TEST_F(DoctorTest, AModelOfAnotherFinger) {
+TEST_F(DoctorTest, AModelOfASofterFingerIsUnfit) {
   rig_.settings.channels[0].health.unfit_mm = 0.3;
   rig_.settings.channels[0].health.model_error_mm = 0.05;
   rig_.settings.channels[0].health.noise_mm = 0.03;
@@ -322,7 +322,7 @@ TEST_F(DoctorTest, AModelOfAnotherFinger) {
   expect("model left", Verdict::fail, "unfit above 0.30");
 }
 
-TEST_F(DoctorTest, AWrongSignOfTheSensor) {
+TEST_F(DoctorTest, AnInvertedSensorFailsTheFingerCheck) {
   ChannelSample rest;
   rest.displacement_mm.deviation = 0.03;
   Motion motion;
@@ -335,7 +335,7 @@ TEST_F(DoctorTest, AWrongSignOfTheSensor) {
   EXPECT_NE(finding("finger left").advice.find("direction opposite to the prediction"), std::string::npos);
 }
 
-TEST_F(DoctorTest, WhatToDoFollowsFromWhatTheBusKnows) {
+TEST_F(DoctorTest, BusAdviceDependsOnTheKindOfBusFault) {
   EXPECT_NE(bus_advice("closed_at_once").find("no further client"), std::string_view::npos);
   EXPECT_NE(bus_advice("exception").find("board map"), std::string_view::npos);
   EXPECT_NE(bus_advice("timed_out").find("settle_s"), std::string_view::npos);
@@ -347,7 +347,7 @@ TEST_F(DoctorTest, WhatToDoFollowsFromWhatTheBusKnows) {
   EXPECT_TRUE(wants_bus_examination(findings_));
 }
 
-TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
+TEST_F(DoctorTest, ARateAboveTheBusBudgetFailsUnlessAccepted) {
   class SlowBoard final : public drivers::Board {
    public:
     [[nodiscard]] std::size_t channels() const noexcept override { return 2; }
@@ -374,7 +374,7 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
   expect("bus budget", Verdict::warn, "46.9 ms");
 }
 
-TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
+TEST_F(DoctorTest, AStopByTheUserVentsTheOutputs) {
   time_.stop_at = 2'500'000'000;  // stop while the pressure rises
   examine(true);
   expect("motion left", Verdict::fail, "stopped by the user");
@@ -382,7 +382,7 @@ TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
   expect("safe state", Verdict::ok, "confirmed");
 }
 
-TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
+TEST_F(DoctorTest, FailsIfTheRecordingFolderIsNotWritable) {
   const daemon::testing::TemporaryFolder folder;
   rig_.recorder.mode = rig::RecorderSettings::Mode::always;
   rig_.recorder.directory = folder.path() + "/new/runs";
@@ -423,7 +423,7 @@ Verdict worst_after(const std::function<void(nlohmann::ordered_json&, nlohmann::
   return findings.worst();
 }
 
-TEST(ExamineDaemon, FindsWhatTheDaemonSaysOfItself) {
+TEST(ExamineDaemon, DerivesTheVerdictFromStatusAndStatistics) {
   using Json = nlohmann::ordered_json;
   EXPECT_EQ(worst_after([](Json&, Json&) {}), Verdict::ok);
   EXPECT_EQ(worst_after([](Json& status, Json&) { status["rig"] = "another"; }), Verdict::warn);
@@ -447,7 +447,7 @@ TEST(ExamineDaemon, FindsWhatTheDaemonSaysOfItself) {
             Verdict::warn);
 }
 
-TEST(ExamineDaemon, AnUnfitModelCountsOnceSomethingHasRun) {
+TEST(ExamineDaemon, AnUnfitModelFailsOnlyAfterASequenceHasRun) {
   using Json = nlohmann::ordered_json;
   const auto unfit = [](Json& status, Json&) { status["channels"][0]["health"] = "unfit"; };
   EXPECT_EQ(worst_after(unfit), Verdict::warn) << "at start-up the finger may still have moved to rest";
@@ -458,13 +458,13 @@ TEST(ExamineDaemon, AnUnfitModelCountsOnceSomethingHasRun) {
             Verdict::fail);
 }
 
-TEST(ExamineDaemon, SurvivesAnAnswerThatSaysNothing) {
+TEST(ExamineDaemon, AnEmptyReplyIsAFailure) {
   Findings findings;
   examine_daemon({}, {}, "bench", findings);
   EXPECT_EQ(findings.worst(), Verdict::fail);
 }
 
-TEST(ExamineDaemon, OneUnpluggedCableIsOneFailure) {
+TEST(ExamineDaemon, ALostConnectionToTheBoardIsOneFailure) {
   auto status = healthy_status();
   status["bus"] = {{"board", "ADAM"}, {"connected", false}, {"attempts", 7}, {"retry_s", 2}};
   status["channels"][0]["validity"] = "stale";
@@ -481,7 +481,7 @@ TEST(ExamineDaemon, OneUnpluggedCableIsOneFailure) {
   EXPECT_NE(text.find("F101 bus_down is latched, see `board`"), std::string::npos) << text;
 }
 
-TEST(ExamineDaemon, AnUnpluggedSensorIsOneFailureAndAFaultWhoseCauseIsGoneIsOne) {
+TEST(ExamineDaemon, ASensorFaultIsOneFailureWhetherItsCauseIsPresentOrNot) {
   auto status = healthy_status();
   status["channels"][0]["validity"] = "out_of_range";
   status["fault"] = {{"code", "F202"},
@@ -503,7 +503,7 @@ TEST(ExamineDaemon, AnUnpluggedSensorIsOneFailureAndAFaultWhoseCauseIsGoneIsOne)
   EXPECT_NE(text.find("The cause is gone."), std::string::npos) << text;
 }
 
-TEST(Findings, SimulatedIsPartOfTheVerdict) {
+TEST(Findings, TheVerdictStatesThatTheRigIsSimulated) {
   Findings findings;
   findings.ok("board", "answers");
   const Examination simulated{"x", "rig.yaml", false, false, true};
@@ -514,7 +514,7 @@ TEST(Findings, SimulatedIsPartOfTheVerdict) {
   EXPECT_TRUE(result::json_of(fields_of(simulated, findings))["simulated"]);
 }
 
-TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {
+TEST(Findings, TheTextShowsTheAdviceBelowEachFailure) {
   Findings findings;
   findings.ok("kernel", "6.1, PREEMPT_RT");
   findings.fail("board", "does not answer", "check power and cable");

@@ -45,12 +45,12 @@ class Gateways : public ::testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("gateways_" + std::to_string(::getpid()));
 };
 
-TEST_F(Gateways, NothingIsSaidOfWhatIsNotEnabled) {
+TEST_F(Gateways, ADisabledServiceHasNoFinding) {
   configure("web.yaml", "port: 8017", 1);
   EXPECT_TRUE(found().empty());
 }
 
-TEST_F(Gateways, WhoListensIsWell) {
+TEST_F(Gateways, AnEnabledServiceThatListensIsOk) {
   const auto plc = net::listen_tcp("127.0.0.1", 0);
   const auto web = net::listen_tcp("127.0.0.1", 0);
   configure("plc.yaml", "port: 502", plc->port);
@@ -64,7 +64,7 @@ TEST_F(Gateways, WhoListensIsWell) {
   EXPECT_EQ(found()[1].verdict, Verdict::ok);
 }
 
-TEST_F(Gateways, WhoShouldAndDoesNotIsAWarning) {
+TEST_F(Gateways, AnEnabledServiceThatDoesNotListenIsAWarning) {
   const std::uint16_t port = net::listen_tcp("127.0.0.1", 0)->port;
   configure("web.yaml", "port: 8017", port);
   enable("softgrip-web");
@@ -73,7 +73,7 @@ TEST_F(Gateways, WhoShouldAndDoesNotIsAWarning) {
   EXPECT_NE(found()[0].text.find("not listening on 127.0.0.1:" + std::to_string(port)), std::string::npos);
 }
 
-TEST_F(Gateways, AFileThatCannotBeUsedIsAWarning) {
+TEST_F(Gateways, AnUnusableConfigurationFileIsAWarning) {
   enable("softgrip-plc");
   ASSERT_EQ(found().size(), 1U);
   EXPECT_EQ(found()[0].verdict, Verdict::warn);

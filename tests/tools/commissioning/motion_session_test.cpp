@@ -153,7 +153,7 @@ class MotionSessionTest : public ::testing::Test {
   Nanoseconds stop_at_ = never;
 };
 
-TEST_F(MotionSessionTest, MovesWithinTheSlewAndLeavesTheLowestPressures) {
+TEST_F(MotionSessionTest, LimitsTheSlewRateAndEndsAtTheRestPressure) {
   {
     MotionSession session(rig_, board_, clock_, stop());
     ASSERT_TRUE(session.connect());
@@ -167,7 +167,7 @@ TEST_F(MotionSessionTest, MovesWithinTheSlewAndLeavesTheLowestPressures) {
   EXPECT_EQ(board_.outputs_kpa[0], 0) << "the destructor writes the rest pressure";
 }
 
-TEST_F(MotionSessionTest, AFingerBelowRestIsBroughtUpToItWithinTheSlew) {
+TEST_F(MotionSessionTest, LeavingRaisesAVacuumToRestWithinTheSlewLimit) {
   rig_ = daemon::testing::example_rig("vacuum/rig.yaml");
   MotionSession session(rig_, board_, clock_, stop());
   ASSERT_TRUE(session.connect());
@@ -182,7 +182,7 @@ TEST_F(MotionSessionTest, AFingerBelowRestIsBroughtUpToItWithinTheSlew) {
   EXPECT_LE(board_.largest_rise_kpa, limits.slew_up_kpa_per_s / rig_.settings.rate_hz + equal_kpa);
 }
 
-TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
+TEST_F(MotionSessionTest, APauseUnderVacuumEndsTheMotionAtTheRestPressure) {
   rig_ = daemon::testing::example_rig("vacuum/rig.yaml");
   rig_.settings.faults.bus_down_cycles = 80;
   MotionSession session(rig_, board_, clock_, stop());
@@ -197,7 +197,7 @@ TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
 }
 
 /// Tests pauses at many times during the motion. No pause is shorter than the watchdog time.
-TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
+TEST_F(MotionSessionTest, APauseOfTheWatchdogTimeEndsTheMotionWithoutAPressureRise) {
   const Nanoseconds begin = clock_.now();
   for (const Nanoseconds pause : {500 * ms, 501 * ms, 800 * ms, 1200 * ms, 60'000 * ms}) {
     for (Nanoseconds at = 40 * ms; at < 5500 * ms; at += 173 * ms) {
@@ -225,7 +225,7 @@ TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesB
   }
 }
 
-TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
+TEST_F(MotionSessionTest, APauseBelowTheWatchdogTimeCausesNoLargerStep) {
   const Nanoseconds begin = clock_.now();
   for (Nanoseconds at = 40 * ms; at < 5500 * ms; at += 173 * ms) {
     SCOPED_TRACE(at / ms);
@@ -242,7 +242,7 @@ TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
 
 /// A program cannot detect a pause between its last reading of the clock and its write. The session must
 /// therefore detect the pause after this write and return to the rest pressures immediately.
-TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsTheMotion) {
+TEST_F(MotionSessionTest, APauseDuringAnExchangeEndsTheMotionAfterTheExchange) {
   MotionSession session(rig_, board_, clock_, stop());
   ASSERT_TRUE(session.connect());
   bool paused = false;
@@ -263,7 +263,7 @@ TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsT
       << "after the vent of the board, at most one further step of the command may be written";
 }
 
-TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotionAndNothingRises) {
+TEST_F(MotionSessionTest, RequestsLostBeyondTheWatchdogTimeEndTheMotionWithoutRise) {
   for (const BusStatus how : {BusStatus::timed_out, BusStatus::disconnected, BusStatus::bad_reply}) {
     for (Nanoseconds at = 40 * ms; at < 5000 * ms; at += 171 * ms) {
       SCOPED_TRACE(std::string(drivers::name_of(how)) + " after " + std::to_string(at / ms) + " ms");
@@ -299,7 +299,7 @@ TEST_F(MotionSessionTest, RepliesThatAreLostForLongerThanTheWatchdogEndTheMotion
   EXPECT_LE(board_.largest_rise_kpa, step_kpa());
 }
 
-TEST_F(MotionSessionTest, ShortLossesMoveNothingFurtherAndNoStepIsLargerBehindThem) {
+TEST_F(MotionSessionTest, AShortCommunicationLossCausesNoLargerStep) {
   for (const bool arrives : {false, true}) {
     StoppableClock clock;
     VentingBoard board(clock);
@@ -314,7 +314,7 @@ TEST_F(MotionSessionTest, ShortLossesMoveNothingFurtherAndNoStepIsLargerBehindTh
   }
 }
 
-TEST_F(MotionSessionTest, ABoardWithoutAWatchdogThatIsSilentForTooLongEndsTheMotion) {
+TEST_F(MotionSessionTest, ALongLossWithoutAWatchdogEndsTheMotion) {
   board_.watchdog_ns = 0;
   rig_.settings.faults.bus_down_cycles = 20;
   board_.lost_from = clock_.now() + 1500 * ms;
@@ -336,7 +336,7 @@ TEST_F(MotionSessionTest, APauseOnABoardWithoutAWatchdogMakesNoLargerStep) {
   EXPECT_LE(board_.largest_rise_kpa, step_kpa());
 }
 
-TEST_F(MotionSessionTest, WhatTheBoardSaysOfItsOutputsEndsTheMotionAtOnce) {
+TEST_F(MotionSessionTest, AnOutputFaultReportedByTheBoardEndsTheMotion) {
   for (const BusStatus said :
        {BusStatus::write_refused, BusStatus::overwritten, BusStatus::watchdog_tripped}) {
     SCOPED_TRACE(drivers::name_of(said));
@@ -355,7 +355,7 @@ TEST_F(MotionSessionTest, WhatTheBoardSaysOfItsOutputsEndsTheMotionAtOnce) {
   }
 }
 
-TEST_F(MotionSessionTest, NothingRisesBeforeWhatIsRequiredWasSeen) {
+TEST_F(MotionSessionTest, DoesNotRaiseThePressureBeforeRequiredReadingsAreValid) {
   for (const Sight sight : {Sight{0, true, false}, Sight{0, false, true}, Sight{0, true, true}}) {
     StoppableClock clock;
     VentingBoard board(clock);
@@ -372,7 +372,7 @@ TEST_F(MotionSessionTest, NothingRisesBeforeWhatIsRequiredWasSeen) {
   }
 }
 
-TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCycles) {
+TEST_F(MotionSessionTest, LosingARequiredReadingEndsTheMotionWithinItsCycleLimit) {
   for (const bool displacement : {true, false}) {
     StoppableClock clock;
     VentingBoard board(clock);
@@ -399,7 +399,7 @@ TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCyc
   }
 }
 
-TEST_F(MotionSessionTest, SingleReadingsThatAreNotValidAreRiddenThrough) {
+TEST_F(MotionSessionTest, SingleInvalidReadingsDoNotEndTheMotion) {
   int exchanges = 0;
   board_.on_exchange = [&] {
     board_.validity = ++exchanges % 7 == 0 ? model::Validity::out_of_range : model::Validity::valid;
@@ -409,7 +409,7 @@ TEST_F(MotionSessionTest, SingleReadingsThatAreNotValidAreRiddenThrough) {
   EXPECT_TRUE(move(session));
 }
 
-TEST_F(MotionSessionTest, StoppedByTheUserItGoesDownWithinTheSlew) {
+TEST_F(MotionSessionTest, AStopByTheUserEndsTheMotionAtTheRestPressure) {
   stop_at_ = clock_.now() + 1500 * ms;
   MotionSession session(rig_, board_, clock_, stop());
   const auto moved = move(session);
@@ -420,7 +420,7 @@ TEST_F(MotionSessionTest, StoppedByTheUserItGoesDownWithinTheSlew) {
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }
 
-TEST_F(MotionSessionTest, ABoardThatIsAwayIsNamed) {
+TEST_F(MotionSessionTest, ErrorNamesTheUnreachableBoard) {
   board_.next_connect = BusStatus::disconnected;
   MotionSession session(rig_, board_, clock_, stop());
   const auto connected = session.connect();

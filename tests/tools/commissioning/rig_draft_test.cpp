@@ -71,7 +71,7 @@ class RigDraftTest : public ::testing::Test {
   std::string warnings_;
 };
 
-TEST_F(RigDraftTest, ABoardInTheNetwork) {
+TEST_F(RigDraftTest, DraftsAValidRigForATcpBoard) {
   const rig::RigFile rig =
       read(draft_of(with({{"board", map_of("adam-6024")}, {"address", "192.168.1.20:1502"}})));
   EXPECT_EQ(warnings_, "");
@@ -86,7 +86,7 @@ TEST_F(RigDraftTest, ABoardInTheNetwork) {
   EXPECT_NE(text_.find("channel_defaults:"), std::string::npos);
 }
 
-TEST_F(RigDraftTest, TwoModulesOnALineWithoutAWatchdog) {
+TEST_F(RigDraftTest, DraftsAValidRigForTwoSerialModulesWithoutWatchdog) {
   const auto given = with({{"board", map_of("waveshare-ao8") + " " + map_of("waveshare-ai8")},
                            {"address", "/dev/serial/by-id/adapter"},
                            {"baud", "115200"},
@@ -100,7 +100,7 @@ TEST_F(RigDraftTest, TwoModulesOnALineWithoutAWatchdog) {
   EXPECT_FALSE(rig.accept_no_watchdog.empty());
 }
 
-TEST_F(RigDraftTest, WithoutTheWordsThereIsNoRig) {
+TEST_F(RigDraftTest, RefusesABoardWithoutWatchdogUnlessAccepted) {
   RigDraft draft = draft_of(with({{"board", map_of("waveshare-ao8") + " " + map_of("waveshare-ai8")},
                                   {"address", "127.0.0.1"},
                                   {"accept-no-watchdog", "yes"}}));
@@ -110,7 +110,7 @@ TEST_F(RigDraftTest, WithoutTheWordsThereIsNoRig) {
   EXPECT_NE(text.error().format().find("does not vent by itself"), std::string::npos);
 }
 
-TEST_F(RigDraftTest, EveryShippedBoardAndModel) {
+TEST_F(RigDraftTest, DraftsAValidRigForEveryShippedBoardAndModel) {
   int boards = 0;
   for (const auto& board : std::filesystem::directory_iterator(config + "boards")) {
     for (const auto& model : std::filesystem::directory_iterator(config + "models")) {
@@ -132,7 +132,7 @@ TEST_F(RigDraftTest, EveryShippedBoardAndModel) {
   EXPECT_GE(boards, 6);
 }
 
-TEST_F(RigDraftTest, ASimulatedRig) {
+TEST_F(RigDraftTest, DraftsAValidSimulatedRig) {
   const rig::RigFile rig =
       read(draft_of(with({{"board", "simulated"}, {"finger", "thumb"}, {"pressure-max-kpa", "45"}})));
   EXPECT_EQ(warnings_, "");
@@ -141,7 +141,7 @@ TEST_F(RigDraftTest, ASimulatedRig) {
   EXPECT_EQ(rig.settings.rate_hz, 200);
 }
 
-TEST_F(RigDraftTest, AFallingSensorAndAnotherValve) {
+TEST_F(RigDraftTest, AppliesAFallingSensorCharacteristicAndAValveRange) {
   const rig::RigFile rig = read(draft_of(with({{"board", map_of("adam-6024")},
                                                {"address", "127.0.0.1"},
                                                {"valve-kpa", "5 500"},
@@ -153,7 +153,7 @@ TEST_F(RigDraftTest, AFallingSensorAndAnotherValve) {
   EXPECT_FALSE(rig.wiring[0].pressure);
 }
 
-TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
+TEST(DraftFacts, ErrorStatesWhyAnAnswerIsRefused) {
   std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // the test gives the paths of boards and models
                                                        // relative to this folder
   RigDraft draft;
@@ -173,7 +173,7 @@ TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
   EXPECT_NE(take(draft, "monitor", "perhaps"), "");
 }
 
-TEST(DraftFacts, TheTemplateHasNoKeyTwice) {
+TEST(DraftFacts, TheTemplateHasChannelDefaultsAndNoTabs) {
   EXPECT_NE(rig_template.find("channel_defaults:"), std::string_view::npos);
   EXPECT_EQ(rig_template.find("\t"), std::string_view::npos);
 }

@@ -74,7 +74,7 @@ class RigUpdateTest : public ::testing::Test {
 
 constexpr drivers::TwoPoints found{2.03, 5.1, 7.41, 32.25};
 
-TEST_F(RigUpdateTest, AChannelGetsItsOwnPointsBesideWhatAllShare) {
+TEST_F(RigUpdateTest, AddsTheCalibrationPointsToTheChannel) {
   const auto changed = updated_rig(text_, rig_, sensor(found));
   ASSERT_TRUE(changed) << changed.error();
   EXPECT_EQ(*changed,
@@ -83,7 +83,7 @@ TEST_F(RigUpdateTest, AChannelGetsItsOwnPointsBesideWhatAllShare) {
                      "    sensor: {input: 0, at_v: [2.03, 7.41], is_mm: [5.1, 32.25]}"));
 }
 
-TEST_F(RigUpdateTest, TheNextTimeTheNumbersAndTheCommentAreReplaced) {
+TEST_F(RigUpdateTest, ASecondCalibrationReplacesPointsAndComment) {
   save(updated_rig(text_, rig_, sensor(found)).value());
   Results next = sensor({2, 5, 7.5, 32});
   next.date = "2027-01-02";
@@ -95,7 +95,7 @@ TEST_F(RigUpdateTest, TheNextTimeTheNumbersAndTheCommentAreReplaced) {
       << *changed;
 }
 
-TEST_F(RigUpdateTest, ValveAndMonitorOfTheOtherChannel) {
+TEST_F(RigUpdateTest, UpdatesValveAndMonitorOfTheSecondChannelOnly) {
   Results results;
   results.date = "2026-11-20";
   results.channel = 1;
@@ -120,7 +120,7 @@ TEST_F(RigUpdateTest, PointsThatTheRigRefusesAreNotWritten) {
   EXPECT_NE(changed.error().find("rig.yaml:"), std::string::npos);
 }
 
-TEST_F(RigUpdateTest, TheOldFileIsKeptAndTheNewOneIsInItsPlace) {
+TEST_F(RigUpdateTest, WritesTheNewFileAndKeepsABackupOfTheOldOne) {
   const auto backup = write_rig(rig_, replaced("name: simulated", "name: other"));
   ASSERT_TRUE(backup) << backup.error();
   EXPECT_EQ(text_of_file(*backup), text_);
@@ -129,7 +129,7 @@ TEST_F(RigUpdateTest, TheOldFileIsKeptAndTheNewOneIsInItsPlace) {
       << "softgrip check FOLDER must not read the backup file as a rig file";
 }
 
-TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {
+TEST_F(RigUpdateTest, DoesNotOverwriteAFileThatWasChangedMeanwhile) {
   std::ofstream(path_, std::ios::app) << "# by hand\n";
   const auto backup = write_rig(rig_, "name: x\n");
   ASSERT_FALSE(backup);
@@ -138,13 +138,13 @@ TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(RigUpdateTest, ALineNearTheOldOneGivesNoWarning) {
+TEST_F(RigUpdateTest, ACalibrationNearTheOldOneCausesNoWarning) {
   Results results = sensor({2, 5.1, 8, 35.3});
   results.valve = ValveResult{line({1, 10, 7, 71}), std::nullopt, true};
   EXPECT_TRUE(plausibility_warnings(rig_, results).empty());
 }
 
-TEST_F(RigUpdateTest, ALineFarFromTheOldOneGivesAWarning) {
+TEST_F(RigUpdateTest, ACalibrationFarFromTheOldOneCausesAWarning) {
   Results results = sensor({2, 5, 8, 26});
   results.valve = ValveResult{line({0, 0, 10, 75}), line({0, 0, 10, 130}), false};
   const auto warnings = plausibility_warnings(rig_, results);
@@ -157,7 +157,7 @@ TEST_F(RigUpdateTest, ALineFarFromTheOldOneGivesAWarning) {
   EXPECT_EQ(warnings[2].rfind("sensor: ", 0), 0U);
 }
 
-TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelGivesAWarning) {
+TEST_F(RigUpdateTest, WarnsIfTheGaugeTravelDiffersFromTheModelPrediction) {
   const auto warnings_with = [&](double travel_mm) {
     Results results = sensor({2, 5, 2 + travel_mm / 5, 5 + travel_mm});
     results.motion = Motion{10, 40, 3, 12};

@@ -18,7 +18,7 @@ model::Model bench_twin() {
   return *model;
 }
 
-TEST(CSource, HoldsWhatTheModelNeedsAndNothingElse) {
+TEST(CSource, ContainsOnlyTheCodeThatTheModelNeeds) {
   const auto source = c_source(bench_twin(), 0.001, 60, "test");
   ASSERT_TRUE(source) << source.error();
   EXPECT_EQ(source->name, "bench_twin");
@@ -28,7 +28,7 @@ TEST(CSource, HoldsWhatTheModelNeedsAndNothingElse) {
   EXPECT_EQ(source->text.find('#', source->text.find("#define DELAY_PIECES") + 1), std::string::npos);
 }
 
-TEST(CSource, ANameThatIsNoneInCAndATextThatEndsACommentDoNoHarm) {
+TEST(CSource, ReplacesCharactersThatAreInvalidInCNamesAndComments) {
   model::Model model = bench_twin();
   model.name = "7 */ int x;";
   const auto source = c_source(model, 0.001, 60, "test");
@@ -37,7 +37,7 @@ TEST(CSource, ANameThatIsNoneInCAndATextThatEndsACommentDoNoHarm) {
   EXPECT_EQ(source->text.find("*/ int"), std::string::npos);
 }
 
-TEST(CSource, BlocksWithoutCAreNamed) {
+TEST(CSource, ErrorNamesABlockWithoutCImplementation) {
   model::Model model = bench_twin();
   model.blocks[2].values.back() = 3;
   const auto source = c_source(model, 0.001, 60, "test");

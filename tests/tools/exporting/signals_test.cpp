@@ -15,7 +15,7 @@ std::vector<SignalGroup> two_fingers() {
       {"right", {0.01, 0.03}, {{"p_kpa", {5, 6}, {}}}}};
 }
 
-TEST(Signals, OfAllFingersStandOnOneAxis) {
+TEST(Signals, WideTableMergesAllFingersOnOneTimeAxis) {
   EXPECT_EQ(wide_csv(wide(two_fingers())),
             "time_s,left_p_kpa,left_state,right_p_kpa\n"
             "0,1,idle,\n"
@@ -24,19 +24,19 @@ TEST(Signals, OfAllFingersStandOnOneAxis) {
             "0.03,,,6\n");
 }
 
-TEST(Signals, WithoutChannelsKeepTheirNames) {
+TEST(Signals, SignalsWithoutAChannelKeepTheirNames) {
   const SignalGroup all = wide({{"", {0}, {{"measured_mm", {1}, {}}}}});
   EXPECT_EQ(all.signals.front().name, "measured_mm");
 }
 
-TEST(MatFile, NamesAreMatlabs) {
+TEST(MatFile, ConvertsNamesToValidMatlabNames) {
   EXPECT_EQ(matlab_name("left displacement.mm"), "left_displacement_mm");
   EXPECT_EQ(matlab_name("2nd_mm"), "x_2nd_mm");
   EXPECT_EQ(matlab_name(""), "x_");
   EXPECT_EQ(matlab_name(std::string(80, 'a')).size(), 63U);
 }
 
-TEST(McapFile, IsTheSameForTheSameSignalsAndFramedByItsMagic) {
+TEST(McapFile, IsReproducibleAndFramedByTheMagicBytes) {
   const std::string bytes = mcap_bytes(two_fingers(), "test");
   EXPECT_TRUE(bytes.starts_with("\x89MCAP0\r\n"));
   EXPECT_TRUE(bytes.ends_with("\x89MCAP0\r\n"));

@@ -10,7 +10,7 @@
 namespace softgrip::tools::figure_files_test {
 namespace {
 
-TEST(FigureFiles, EachFigureIsThereThreeTimes) {
+TEST(FigureFiles, WritesEachFigureAsSvgPdfAndCsv) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("softgrip_figures_" + std::to_string(::getpid()));
   sysid::Chart chart;
@@ -33,11 +33,11 @@ TEST(FigureFiles, EachFigureIsThereThreeTimes) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(FigureFiles, NoFolderNoFiles) {
+TEST(FigureFiles, SucceedsWithoutAFolder) {
   EXPECT_TRUE(write_figures("", {sysid::Figure{}}));
 }
 
-TEST(FigureFiles, AReportIsItsFilesItsPageAndItsFigures) {
+TEST(FigureFiles, AReportConsistsOfFilesPageAndFigures) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("softgrip_report_" + std::to_string(::getpid()));
   sysid::Page page("Title", "Verdict", sysid::Tone::good);

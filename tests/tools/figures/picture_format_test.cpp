@@ -24,7 +24,7 @@ sysid::Figure a_figure() {
   return {"a figure", "What it shows.", {{chart}}};
 }
 
-TEST(PictureFormat, IsWhatTheEndingSays) {
+TEST(PictureFormat, FollowsFromTheFileNameExtension) {
   EXPECT_EQ(picture_format_of("out/a.svg"), PictureFormat::svg);
   EXPECT_EQ(picture_format_of("A.PDF"), PictureFormat::pdf);
   EXPECT_EQ(picture_format_of("a.b.png"), PictureFormat::png);
@@ -42,14 +42,14 @@ TEST(PictureFormat, APdfIsOnePageOfTheFiguresSize) {
   EXPECT_NE(pdf->find("/MediaBox [ 0 0 570 210 ]"), std::string::npos) << "760 x 280 pixels";
 }
 
-TEST(PictureFormat, OthersAreWhatTheySay) {
+TEST(PictureFormat, PngSvgAndHtmlHaveTheirFileSignatures) {
   EXPECT_EQ(bytes_of(a_figure(), PictureFormat::png)->substr(1, 3), "PNG");
   EXPECT_EQ(bytes_of(a_figure(), PictureFormat::svg)->substr(0, 4), "<svg");
   const std::string html = *bytes_of(a_figure(), PictureFormat::html);
   EXPECT_NE(html.find("Figure 1.</b> What it shows."), std::string::npos);
 }
 
-TEST(SvgRendering, WhatIsNoSvgIsRefused) {
+TEST(SvgRendering, RefusesTextThatIsNotSvg) {
   EXPECT_FALSE(pdf_of("<svg"));
   EXPECT_FALSE(png_of("no picture"));
 }

@@ -7,7 +7,7 @@ namespace {
 
 using sysid::Role;
 
-TEST(ImportOptions, AreAMappingUponTheOneThatWasBegun) {
+TEST(ImportOptions, OptionsOverrideTheExistingMapping) {
   sysid::Mapping begun;
   begun[Role::command].columns = {"p"};
   begun[Role::command].unit = "bar";
@@ -31,7 +31,7 @@ TEST(ImportOptions, AreAMappingUponTheOneThatWasBegun) {
   EXPECT_EQ(mapping->missing, std::vector<std::string>{"lost"});
 }
 
-TEST(ImportTargets, OneFileIsALogSeveralAreAFolder) {
+TEST(ImportTargets, OneInputBecomesAFileAndSeveralBecomeAFolder) {
   EXPECT_EQ(*import_targets({"a/day.csv"}, "log.csv"), std::vector<std::string>{"log.csv"});
   EXPECT_EQ(*import_targets({"a/day.csv.gz", "b/run.mat"}, "logs/"),
             (std::vector<std::string>{"logs/day.csv", "logs/run.csv"}));

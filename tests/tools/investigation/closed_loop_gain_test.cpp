@@ -19,7 +19,7 @@ model::Model loaded(const std::string& name) {
   return model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems).value();
 }
 
-TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
+TEST(ClosedLoopGain, TheExtendedModelHalvesTheControlErrorOfTheRefittedModel) {
   ClosedLoopQuestion question;
   question.recalibrated = loaded("zhang2025");  // this model has no inverse
   question.extended = loaded("bench_twin");
@@ -39,7 +39,7 @@ TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   EXPECT_EQ(json["gains"]["extended"]["feedforward"], "full_model");
 }
 
-TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
+TEST(ClosedLoopGain, UsesPlannedFeedforwardForAModelWithoutAnInverse) {
   ClosedLoopQuestion question;
   question.recalibrated = loaded("bench_twin");
   question.extended = loaded("zhang2025");
@@ -57,7 +57,7 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
 /// The model contains friction that relaxes within a few ticks. This friction has no inverse. The time steps
 /// of a planned feedforward are too long to compensate this friction. The other blocks predict most of the
 /// motion, so the feedforward must use the model without the friction.
-TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
+TEST(ClosedLoopGain, UsesTheInvertiblePartOfAModelAsFeedforward) {
   model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
                                                {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});
   finger = model::with_block(std::move(finger),
@@ -79,7 +79,7 @@ TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   EXPECT_NE(json["notes"].dump().find("omits relaxing_friction"), std::string::npos);
 }
 
-TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
+TEST(ClosedLoopGain, UsesThePidAloneForAModelWithoutMotion) {
   ClosedLoopQuestion question;
   question.extended = loaded("bench_twin");
   question.recalibrated = model::only(
@@ -92,7 +92,7 @@ TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
   EXPECT_NE(gain.notes().front().find("PID controller alone"), std::string::npos);
 }
 
-TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {
+TEST(ClosedLoopGain, IsReproducibleAndEqualForEqualModels) {
   ClosedLoopQuestion question;
   question.recalibrated = question.extended = loaded("bench_twin");
   question.span_mm = 11;  // 11 mm; the reference 13 ± 7 mm would need a span of 22 mm

@@ -17,7 +17,7 @@ model::Model loaded(const std::string& path) {
 
 /// The command must remove the file of an earlier diagnosis, because a user would associate this file with
 /// the new model.
-TEST(DiagnosisFolder, HoldsTheModelOfTheFeedforwardWhereThatIsNotTheWholeOne) {
+TEST(DiagnosisFolder, ContainsAFeedforwardModelOnlyIfItIsPartOfTheModel) {
   const ScratchFolder scratch;
   const std::filesystem::path file = std::filesystem::path(scratch.path()) / "feedforward_model.yaml";
   sysid::Diagnosis diagnosis;

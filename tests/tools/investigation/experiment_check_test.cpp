@@ -30,7 +30,7 @@ sysid::Log played(const std::vector<double>& command_kpa) {
 
 const sysid::RigLimits limits{50, 300};
 
-TEST(ExperimentCheck, EveryExperimentOfTheMenuIsItsOwnPromise) {
+TEST(ExperimentCheck, AcceptsEveryCorrectlyExecutedExperiment) {
   for (const sysid::Waveform& waveform : sysid::experiment_menu(limits)) {
     sysid::Log log = played(sysid::sampled_kpa(waveform, interval_s));
     EXPECT_EQ(broken_promise(waveform, log), std::nullopt) << waveform.name;
@@ -38,7 +38,7 @@ TEST(ExperimentCheck, EveryExperimentOfTheMenuIsItsOwnPromise) {
   }
 }
 
-TEST(ExperimentCheck, ARigThatEndsEarlyOrGoesLessFarBreaksIt) {
+TEST(ExperimentCheck, RefusesAShortenedClippedOrDisturbedExperiment) {
   const sysid::Waveform waveform = sysid::experiment_menu(limits).front();
   const sysid::Log log = played(sysid::sampled_kpa(waveform, interval_s));
   const auto sentence = [&](const sysid::Log& other) { return broken_promise(waveform, other).value_or(""); };
@@ -52,7 +52,7 @@ TEST(ExperimentCheck, ARigThatEndsEarlyOrGoesLessFarBreaksIt) {
   EXPECT_NE(sentence(restless).find("changed by a total of"), std::string::npos) << sentence(restless);
 }
 
-TEST(ExperimentCheck, AWallOnTheWayIsNoticedAndASofterFingerIsNot) {
+TEST(ExperimentCheck, DetectsAnObstacleButAcceptsASofterFinger) {
   for (const sysid::Waveform& waveform : sysid::experiment_menu(limits)) {
     const sysid::Log log = played(sysid::sampled_kpa(waveform, interval_s));
     const double top_mm = *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end());

@@ -53,7 +53,7 @@ NotPlayed refused(const daemon::Outcome& outcome) {
   return played ? NotPlayed{} : played.error();
 }
 
-TEST(ExperimentRig, AFaultOnTheWayIsNotAcceptableAndIsNamed) {
+TEST(ExperimentRig, EveryEndingHasAnExitCodeAndAFaultIsNamed) {
   const NotPlayed faulted = refused(outcome_of(Ending::sequence_ended, SequenceEnd::faulted, true));
   EXPECT_FALSE(faulted.stopped);
   EXPECT_EQ(faulted.code, ExitCode::not_acceptable);
@@ -68,7 +68,7 @@ TEST(ExperimentRig, AFaultOnTheWayIsNotAcceptableAndIsNamed) {
   EXPECT_TRUE(refused(interrupted).stopped);
 }
 
-TEST(ExperimentRig, ACommissioningEndsWithTheCodeOfItsExperiment) {
+TEST(ExperimentRig, CommissioningReturnsTheExitCodeOfTheExperiment) {
   CommissioningOptions options;
   options.experiments = {"sharp_steps"};
   const auto runs = play_commissioning(

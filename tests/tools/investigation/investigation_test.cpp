@@ -81,7 +81,7 @@ class InvestigationTest : public ::testing::Test {
   int plays_ = 0;
 };
 
-TEST_F(InvestigationTest, SettlesOnTheTruthAndRecordsEveryStep) {
+TEST_F(InvestigationTest, FindsTheTrueCauseAndRecordsEveryStep) {
   const auto result = investigate(options_);
   ASSERT_TRUE(result) << result.error().why;
   EXPECT_EQ(result->end, InvestigationEnd::settled) << result->why;
@@ -128,7 +128,7 @@ ExperimentRig simulated_rig() {
   return experiment_rig(std::move(*rig), "left").value();
 }
 
-TEST(ExperimentRig, PlaysOnASimulatedBoardWithoutAskingAndReturnsItsLog) {
+TEST(ExperimentRig, RunsOnASimulatedBoardWithoutConsentAndReturnsTheLog) {
   const fs::path folder = fs::temp_directory_path() / ("softgrip_rig_player_" + std::to_string(::getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);
@@ -156,7 +156,7 @@ TEST(ExperimentRig, AFaultThatEndsTheExperimentIsNamed) {
   fs::remove_all(folder);
 }
 
-TEST(ExperimentRig, KeepsWithinTheChannelsLimitsAndItsDisplacementRange) {
+TEST(ExperimentRig, LimitsThePressureByChannelLogsAndDisplacementRange) {
   const ExperimentRig rig = simulated_rig();
   EXPECT_EQ(rig.limits(0, 0).pressure_max_kpa, 60);
   EXPECT_EQ(rig.limits(0, 0).slew_kpa_per_s, 300);
@@ -171,7 +171,7 @@ TEST(ExperimentRig, KeepsWithinTheChannelsLimitsAndItsDisplacementRange) {
   EXPECT_FALSE(experiment_rig(*file, "middle"));
 }
 
-TEST(CommandPlayer, CallsTheCommandWithACommandFileAndReadsItsLog) {
+TEST(CommandPlayer, RunsTheCommandAndReadsTheLog) {
   const fs::path folder = fs::temp_directory_path() / ("softgrip command's " + std::to_string(::getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);
@@ -232,7 +232,7 @@ class GaugeStepTest : public InvestigationTest {
   int checks_ = 0;
 };
 
-TEST_F(GaugeStepTest, AStraightSensorSettlesOnTheFinger) {
+TEST_F(GaugeStepTest, ALinearSensorAttributesTheErrorToTheFinger) {
   const auto result = investigate(options_);
   ASSERT_TRUE(result) << result.error().why;
   EXPECT_EQ(result->end, InvestigationEnd::settled) << result->why;
@@ -253,7 +253,7 @@ TEST_F(GaugeStepTest, AStraightSensorSettlesOnTheFinger) {
   EXPECT_EQ(json["gauge"]["sha256"].get<std::string>().size(), 64U);
 }
 
-TEST_F(GaugeStepTest, OneThatIsThereAlreadyIsNotMadeAgain) {
+TEST_F(GaugeStepTest, UsesAnExistingGaugeFileWithoutANewCheck) {
   const auto made = investigate(options_);
   ASSERT_TRUE(made && made->gauge);
   options_.diagnosis.gauge = made->gauge;
@@ -264,7 +264,7 @@ TEST_F(GaugeStepTest, OneThatIsThereAlreadyIsNotMadeAgain) {
   EXPECT_EQ(checks_, 1);
 }
 
-TEST_F(GaugeStepTest, WithNobodyToPutTheTargetItEndsWithTheAdvice) {
+TEST_F(GaugeStepTest, EndsWithAdviceIfNoGaugeCheckIsPossible) {
   options_.take_gauge = nullptr;
   const auto result = investigate(options_);
   ASSERT_TRUE(result);
@@ -273,7 +273,7 @@ TEST_F(GaugeStepTest, WithNobodyToPutTheTargetItEndsWithTheAdvice) {
   EXPECT_TRUE(fs::exists(folder_ / "step_1" / "gauge_positions.csv"));
 }
 
-TEST_F(GaugeStepTest, ItCountsAgainstTheBudget) {
+TEST_F(GaugeStepTest, DoesNotCheckTheGaugeBeyondTheTimeBudget) {
   options_.budget_minutes = 5;
   const auto result = investigate(options_);
   ASSERT_TRUE(result);
@@ -281,7 +281,7 @@ TEST_F(GaugeStepTest, ItCountsAgainstTheBudget) {
   EXPECT_EQ(checks_, 0);
 }
 
-TEST_F(GaugeStepTest, ARefusalStopsAndAFailureFails) {
+TEST_F(GaugeStepTest, ARefusedCheckStopsAndAFailedCheckFails) {
   for (const bool stops : {true, false}) {
     options_.take_gauge = [&](const std::vector<double>&,
                               const std::string&) -> tl::expected<sysid::GaugeFile, NotPlayed> {
@@ -296,7 +296,7 @@ TEST_F(GaugeStepTest, ARefusalStopsAndAFailureFails) {
   }
 }
 
-TEST_F(GaugeStepTest, AGaugeThatDecidesNothingIsNotAskedTwice) {
+TEST_F(GaugeStepTest, DoesNotRepeatAnInconclusiveGaugeCheck) {
   options_.take_gauge = [this](const std::vector<double>& positions_mm, const std::string& folder) {
     ++checks_;
     std::vector<sysid::GaugeReading> readings;
@@ -311,7 +311,7 @@ TEST_F(GaugeStepTest, AGaugeThatDecidesNothingIsNotAskedTwice) {
   EXPECT_NE(result->why.find("The gauge check was not conclusive"), std::string::npos) << result->why;
 }
 
-TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {
+TEST(SimulatedGauge, ReadsTheNonlinearSensorWithoutTheFinger) {
   ExperimentRig rig = simulated_rig();
   auto& channel = std::get<simulation::SimulatedBoardSettings>(rig.rig.board).channels[rig.channel];
   channel.plant.model = model::with_block(
@@ -332,7 +332,7 @@ TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {
   fs::remove_all(folder);
 }
 
-TEST(CommandGauge, CallsTheCommandWithPositionsAndReadsItsFile) {
+TEST(CommandGauge, RunsTheCommandWithPositionsAndReadsTheGaugeFile) {
   const fs::path folder = fs::temp_directory_path() / ("softgrip gauge's " + std::to_string(::getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);

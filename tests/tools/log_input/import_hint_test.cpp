@@ -9,7 +9,7 @@
 namespace softgrip::tools::import_hint_test {
 namespace {
 
-TEST(ImportHint, IsTheCommandThatWouldDoItOrTheOneThatShowsTheColumns) {
+TEST(ImportHint, ProposesAnImportCommandOrOneThatListsTheColumns) {
   const auto folder = std::filesystem::temp_directory_path() / "softgrip_import_hint_test";
   const std::string path = (folder / "day 1.csv").string();
   const auto hint_for = [&](const std::string& header) {

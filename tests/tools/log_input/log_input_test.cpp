@@ -30,7 +30,7 @@ std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool
   return path;
 }
 
-TEST(LogInput, ALogThatBeginsAsItsCommandWasSetGetsASampleBeforeIt) {
+TEST(LogInput, InsertsAnInitialSampleIfTheLogStartsAtACommandStep) {
   const daemon::testing::TemporaryFolder folder;
   const auto logs = read_logs({begun_at_a_step(folder)}, {});
   ASSERT_TRUE(logs);
@@ -39,7 +39,7 @@ TEST(LogInput, ALogThatBeginsAsItsCommandWasSetGetsASampleBeforeIt) {
   EXPECT_TRUE(std::isnan(logs->front().displacement_mm.front()));
 }
 
-TEST(LogInput, WithoutAMeasuredPressureAStageOfItsOwnHasNoOtherBeginning) {
+TEST(LogInput, StartsAtTheLowestCommandWithoutAMeasuredPressure) {
   const daemon::testing::TemporaryFolder folder;
   LogInput staged;
   staged.begins_at_measured_pressure = true;
@@ -49,7 +49,7 @@ TEST(LogInput, WithoutAMeasuredPressureAStageOfItsOwnHasNoOtherBeginning) {
   EXPECT_EQ(logs->front().pressure_command_kpa.front(), 30) << "this log starts at its lowest command";
 }
 
-TEST(LogInput, NotWhereTheMeasuredPressureDrivesAStageOrAll) {
+TEST(LogInput, InsertsNoSampleIfTheMeasuredPressureIsTheInput) {
   const daemon::testing::TemporaryFolder folder;
   const std::string path = begun_at_a_step(folder);
   LogInput staged;

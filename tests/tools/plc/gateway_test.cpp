@@ -115,7 +115,7 @@ TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
 }
 
 /// The fuzz target aborts if a checked property does not hold, and the test then fails.
-TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
+TEST(PlcRequests, CompleteAndTruncatedFuzzSeedsViolateNoProperty) {
   std::size_t seeds = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(SOFTGRIP_SOURCE_DIR "/tests/tools/plc/plc_request_corpus")) {
@@ -127,13 +127,13 @@ TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
   EXPECT_GE(seeds, 5U);
 }
 
-TEST_F(GatewayTest, BeatsItself) {
+TEST_F(GatewayTest, TheHeartbeatRegisterCountsTenPerSecond) {
   const std::uint16_t before = read(Name::heartbeat);
   now_ += ns_per_s;
   EXPECT_EQ(read(Name::heartbeat), before + 10);
 }
 
-TEST_F(GatewayTest, AnOldBlockFromASecondConnectionStartsNothing) {
+TEST_F(GatewayTest, AnOldBlockOnASecondConnectionIsRefused) {
   daemon_comes();
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
@@ -185,7 +185,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
 }
 
-TEST_F(GatewayTest, TwoMastersDoNotWriteOneCommandTogether) {
+TEST_F(GatewayTest, RegistersOfTwoClientsAreNotCombinedIntoOneCommand) {
   daemon_comes();
   const Masters::Id second = come("127.0.0.2");
   put(plc_, 0, CommandCode::none);
@@ -196,7 +196,7 @@ TEST_F(GatewayTest, TwoMastersDoNotWriteOneCommandTogether) {
   EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
 }
 
-TEST_F(GatewayTest, AWriteDropsWhatAnotherConnectionHasSentHalf) {
+TEST_F(GatewayTest, AWriteDropsConnectionsWithIncompleteRequests) {
   const Masters::Id half = come();
   gateway_.masters().find(half)->half = true;
   static_cast<void>(read(Name::state));
@@ -206,7 +206,7 @@ TEST_F(GatewayTest, AWriteDropsWhatAnotherConnectionHasSentHalf) {
   EXPECT_TRUE(gateway_.masters().has(plc_));
 }
 
-TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
+TEST_F(GatewayTest, AHeartbeatTimeOutStopsAndForbidsStartsUntilConfirmed) {
   daemon_comes();
   EXPECT_EQ(read(Name::master), 0);
   write(Name::master_heartbeat, 5);
@@ -225,7 +225,7 @@ TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
-TEST_F(GatewayTest, LastValuesOfTwoStoppedMastersAreNoHeartbeat) {
+TEST_F(GatewayTest, ConstantValuesOnTwoConnectionsAreNoHeartbeat) {
   daemon_comes();
   const Masters::Id second = come();
   write(plc_, Name::master_heartbeat, {5});
@@ -239,7 +239,7 @@ TEST_F(GatewayTest, LastValuesOfTwoStoppedMastersAreNoHeartbeat) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
 }
 
-TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
+TEST_F(GatewayTest, RepeatsTheStopUntilADaemonConfirmsTheStop) {
   daemon_comes();
   write(Name::master_heartbeat, 5);
   gateway_.daemon_went();  // the daemon and the master become silent at the same time
@@ -263,7 +263,7 @@ TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   EXPECT_FALSE(gateway_.watch().owes());
 }
 
-TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
+TEST_F(GatewayTest, AReplyToAnEarlierStopDoesNotConfirmALaterStop) {
   daemon_comes();
   write(Name::master_heartbeat, 5);
   pass(settings_.silence_s + 0.1);
@@ -280,7 +280,7 @@ TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
   EXPECT_FALSE(gateway_.watch().owes());
 }
 
-TEST_F(GatewayTest, AReleaseIsAskedForAgainOfADaemonThatStarts) {
+TEST_F(GatewayTest, RepeatsAReleaseThatAStartingDaemonRefuses) {
   settings_.when_silent = Reaction::release;
   daemon_comes();
   write(Name::master_heartbeat, 5);
@@ -294,7 +294,7 @@ TEST_F(GatewayTest, AReleaseIsAskedForAgainOfADaemonThatStarts) {
   EXPECT_TRUE(sent().empty());
 }
 
-TEST_F(GatewayTest, WithoutAReactionASilenceOnlyForbidsStarts) {
+TEST_F(GatewayTest, ATimeOutWithoutAReactionSendsNoCommand) {
   settings_.when_silent = Reaction::nothing;
   daemon_comes();
   write(Name::master_heartbeat, 5);
@@ -304,7 +304,7 @@ TEST_F(GatewayTest, WithoutAReactionASilenceOnlyForbidsStarts) {
   EXPECT_EQ(read(Name::master), 1);
 }
 
-TEST_F(GatewayTest, ADaemonThatIsPausedIsSentAStopAndAVent) {
+TEST_F(GatewayTest, SendsAVentButNoStartToAPausedDaemon) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);
   put(plc_, 1, CommandCode::start);
@@ -324,7 +324,7 @@ TEST_F(GatewayTest, ADaemonThatIsPausedIsSentAStopAndAVent) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
-TEST_F(GatewayTest, ADaemonThatNeverAnswersIsSentSoMuchAndNoMore) {
+TEST_F(GatewayTest, LimitsTheCommandsSentToADaemonThatDoesNotReply) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);
   std::size_t lines = 0;
@@ -338,7 +338,7 @@ TEST_F(GatewayTest, ADaemonThatNeverAnswersIsSentSoMuchAndNoMore) {
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_daemon));
 }
 
-TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
+TEST_F(GatewayTest, AQueuedCommandIsSentAfterTheExecutingOne) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);
   put(plc_, 1, CommandCode::release);
@@ -351,7 +351,7 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
 
 /// The control loop may still execute the command. The gateway must therefore report the outcome as unknown,
 /// not as refused.
-TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
+TEST_F(GatewayTest, ACommandThatTheLoopDidNotConfirmIsUnknown) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);
   put(plc_, 1, CommandCode::start);
@@ -363,7 +363,7 @@ TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
 }
 
-TEST_F(GatewayTest, NoLineThatPassesTheCheckStopsIt) {
+TEST_F(GatewayTest, EveryAcceptedReplyIsProcessedWithoutException) {
   daemon_comes();
   for (const Json& good : tools::testing::good_lines()) {
     for (const Json& bad : tools::testing::damaged(good)) {
@@ -375,7 +375,7 @@ TEST_F(GatewayTest, NoLineThatPassesTheCheckStopsIt) {
   }
 }
 
-TEST(Server, KnowsWhereAConnectionComesFrom) {
+TEST(Server, ReturnsTheAddressOfTheClient) {
   const auto listener = net::listen_tcp("127.0.0.1", 0);
   ASSERT_TRUE(listener);
   Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));

@@ -608,35 +608,35 @@ void expect_nothing_broken(const Budget& budget) {
   EXPECT_GT(found.states, 1000U);
 }
 
-TEST(HandshakeSearch, OneMasterOnTwoConnections) {
+TEST(HandshakeSearch, NoViolationWithOneClientOnTwoConnections) {
   expect_nothing_broken({.commands = {3, 0}, .connections = {2, 0}, .busy = 1});
 }
 
-TEST(HandshakeSearch, TwoMasters) {
+TEST(HandshakeSearch, NoViolationWithTwoClients) {
   expect_nothing_broken({.commands = {2, 1}, .connections = {1, 1}});
 }
 
-TEST(HandshakeSearch, AGatewayThatDies) {
+TEST(HandshakeSearch, NoViolationIfTheGatewayRestarts) {
   expect_nothing_broken({.commands = {1, 0}, .connections = {2, 1}, .gateway_deaths = 1});
 }
 
-TEST(HandshakeSearch, AMasterThatFallsSilentAndADaemonThatDies) {
+TEST(HandshakeSearch, NoViolationWithASilentClientAndADaemonRestart) {
   expect_nothing_broken({.commands = {1, 0}, .connections = {1, 0}, .daemon_deaths = 1, .time = true});
 }
 
-TEST(HandshakeSearch, AMasterThatFallsSilentAndADaemonThatIsPaused) {
+TEST(HandshakeSearch, NoViolationWithASilentClientAndAPausedDaemon) {
   expect_nothing_broken({.commands = {1, 0}, .connections = {1, 0}, .pauses = 1, .time = true});
 }
 
-TEST(HandshakeSearch, AMasterThatFallsSilentAndADaemonThatIsBusy) {
+TEST(HandshakeSearch, NoViolationWithASilentClientAndABusyDaemon) {
   expect_nothing_broken({.commands = {1, 0}, .connections = {1, 0}, .busy = 1, .time = true});
 }
 
-TEST(HandshakeSearch, AMasterThatIsImpatientAndFallsSilent) {
+TEST(HandshakeSearch, NoViolationWithASilentClientThatDoesNotWaitForReplies) {
   expect_nothing_broken({.commands = {2, 0}, .connections = {1, 0}, .impatient = true, .time = true});
 }
 
-TEST(HandshakeSearch, TwoMastersThatFallSilent) {
+TEST(HandshakeSearch, NoViolationWithTwoSilentClients) {
   expect_nothing_broken({.connections = {1, 1}, .master_deaths = 1, .time = true});
 }
 

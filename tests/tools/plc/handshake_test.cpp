@@ -11,7 +11,7 @@ constexpr Command stop{2};
 constexpr Command vent{3};
 constexpr Command release{4};
 
-TEST(Handshake, ACounterIsCarriedOutOnceHoweverOftenItIsWritten) {
+TEST(Handshake, ExecutesARepeatedCounterOnce) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
@@ -38,7 +38,7 @@ TEST(Handshake, TheFirstCounterAfterTheStartIsRefused) {
   EXPECT_TRUE(handshake.write(plc, {18, start}));
 }
 
-TEST(Handshake, TheFirstCounterWithoutACommandIsWhereAMasterBegins) {
+TEST(Handshake, TheFirstCounterWithoutACommandSynchronises) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {40, none}));
@@ -95,7 +95,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   EXPECT_TRUE(handshake.write(first, {3, start}));
 }
 
-TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
+TEST(Handshake, RefusesASecondClientWithAnotherCommandAtTheSameCounter) {
   Handshake handshake;
   Cursor first;
   Cursor second;
@@ -114,7 +114,7 @@ TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
   EXPECT_FALSE(again.refused);
 }
 
-TEST(Handshake, ANextCommandMayBePreparedBehindTheLastCounter) {
+TEST(Handshake, ACommandWithoutANewCounterIsNeitherExecutedNorRefused) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
@@ -127,7 +127,7 @@ TEST(Handshake, ANextCommandMayBePreparedBehindTheLastCounter) {
   EXPECT_TRUE(handshake.write(plc, {2, vent}));
 }
 
-TEST(Handshake, OnlyStopAndVentOvertake) {
+TEST(Handshake, OnlyStopAndVentSupersedeAnExecutingCommand) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
@@ -147,7 +147,7 @@ TEST(Handshake, OnlyStopAndVentOvertake) {
   EXPECT_FALSE(handshake.take_waiting());
 }
 
-TEST(Handshake, WhatWaitsHasItsTurnOnce) {
+TEST(Handshake, AQueuedCommandIsExecutedOnce) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
@@ -163,7 +163,7 @@ TEST(Handshake, WhatWaitsHasItsTurnOnce) {
   EXPECT_FALSE(handshake.take_waiting());
 }
 
-TEST(Handshake, WhatWaitsIsRefusedAfterAStopThatHasNoCounter) {
+TEST(Handshake, AQueuedCommandIsRefusedAfterAnInternalStop) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
@@ -174,7 +174,7 @@ TEST(Handshake, WhatWaitsIsRefusedAfterAStopThatHasNoCounter) {
   EXPECT_EQ(handshake.take_waiting()->refusal, Reason::master_silent);
 }
 
-TEST(Handshake, WhatIsUnderWayWhenTheDaemonGoesIsUnknownAndNotSentAgain) {
+TEST(Handshake, ACommandIsUnknownAndNotRepeatedAfterADaemonLoss) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
@@ -187,7 +187,7 @@ TEST(Handshake, WhatIsUnderWayWhenTheDaemonGoesIsUnknownAndNotSentAgain) {
   EXPECT_FALSE(handshake.write(plc, {1, start}));
 }
 
-TEST(Handshake, KnowsHowFarACounterIsAhead) {
+TEST(Handshake, ReturnsTheSignedDistanceOfACounter) {
   Handshake handshake;
   Cursor plc;
   EXPECT_EQ(handshake.ahead(7), 0);

@@ -5,7 +5,7 @@
 namespace softgrip::plc::master_watch_test {
 namespace {
 
-TEST(MasterWatch, SilenceCountsFromTheFirstBeat) {
+TEST(MasterWatch, TheTimeOutStartsWithTheFirstHeartbeat) {
   MasterWatch watch(100);
   EXPECT_FALSE(watch.watched());
   EXPECT_FALSE(watch.silent(1000));
@@ -17,7 +17,7 @@ TEST(MasterWatch, SilenceCountsFromTheFirstBeat) {
   EXPECT_TRUE(watch.silent(1101));
 }
 
-TEST(MasterWatch, TheReactionIsOwedUntilItIsConfirmedAndOncePerSilence) {
+TEST(MasterWatch, TheReactionIsDueOncePerTimeOutUntilConfirmed) {
   MasterWatch watch(100);
   watch.beat(1000);
   EXPECT_TRUE(watch.look(1101));
@@ -37,7 +37,7 @@ TEST(MasterWatch, TheReactionIsOwedUntilItIsConfirmedAndOncePerSilence) {
   EXPECT_TRUE(watch.silent(1400));
 }
 
-TEST(MasterWatch, ASilenceThatNobodyLookedAtIsOne) {
+TEST(MasterWatch, DetectsATimeOutAtTheNextHeartbeat) {
   MasterWatch watch(100);
   watch.beat(1000);
   watch.beat(1500);

@@ -27,7 +27,7 @@ class Places : public ::testing::Test {
   Nanoseconds now_ = ns_per_s;
 };
 
-TEST_F(Places, AMasterIsNotLockedOutByItsOwnDeadConnections) {
+TEST_F(Places, ANewConnectionReplacesTheMostIdleOneOfTheAddress) {
   std::vector<Masters::Id> dead;
   for (int i = 0; i < 3; ++i) {
     dead.push_back(come());
@@ -45,7 +45,7 @@ TEST_F(Places, AMasterIsNotLockedOutByItsOwnDeadConnections) {
   EXPECT_TRUE(masters_.has(alive));
 }
 
-TEST_F(Places, WhoAsksKeepsItsPlace) {
+TEST_F(Places, AnActiveConnectionIsNotReplaced) {
   const Masters::Id plc = come();
   std::size_t admitted = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -58,7 +58,7 @@ TEST_F(Places, WhoAsksKeepsItsPlace) {
   EXPECT_GT(admitted, 100U);
 }
 
-TEST_F(Places, WhoNeverAskedGoesBeforeWhoDid) {
+TEST_F(Places, ReplacesAConnectionWithoutRequestsFirst) {
   const Masters::Id plc = come();
   ask(plc);
   now_ += ns_per_s;
@@ -70,7 +70,7 @@ TEST_F(Places, WhoNeverAskedGoesBeforeWhoDid) {
   EXPECT_FALSE(masters_.has(first));
 }
 
-TEST_F(Places, ACrowdThatAsksNothingTakesNoPlaceFromAMasterThatAsksSeldom) {
+TEST_F(Places, ConnectionsWithoutRequestsDoNotReplaceAnIdleClient) {
   const Masters::Id plc = come();
   ask(plc);
   for (int i = 0; i < 1000; ++i) {
@@ -80,14 +80,14 @@ TEST_F(Places, ACrowdThatAsksNothingTakesNoPlaceFromAMasterThatAsksSeldom) {
   }
 }
 
-TEST_F(Places, WithoutAnIdleConnectionThereIsNoPlace) {
+TEST_F(Places, RefusesAConnectionIfNoConnectionIsIdle) {
   for (int i = 0; i < 3; ++i) ask(come());
   EXPECT_FALSE(masters_.admit("10.0.0.1", now_));
   now_ += ns_per_s;
   EXPECT_TRUE(masters_.admit("10.0.0.1", now_));
 }
 
-TEST_F(Places, AnotherAddressKeepsItsPlace) {
+TEST_F(Places, ConnectionsOfOneAddressDoNotReplaceAnotherAddress) {
   const Masters::Id other = come("10.0.0.2");
   come();
   come();
@@ -98,7 +98,7 @@ TEST_F(Places, AnotherAddressKeepsItsPlace) {
   EXPECT_TRUE(masters_.has(other));
 }
 
-TEST_F(Places, AnAddressWithoutAPlaceGetsOneOfTheAddressWithTheMost) {
+TEST_F(Places, ANewAddressReplacesAConnectionOfTheLargestAddress) {
   const Masters::Id first = come("10.0.0.2");
   const Masters::Id second = come("10.0.0.2");
   const Masters::Id other = come("10.0.0.3");
@@ -110,7 +110,7 @@ TEST_F(Places, AnAddressWithoutAPlaceGetsOneOfTheAddressWithTheMost) {
   EXPECT_FALSE(masters_.admit("10.0.0.4", now_));
 }
 
-TEST_F(Places, WhoAsksNothingIsDropped) {
+TEST_F(Places, ClosesAConnectionWithoutRequestsAfterTheTimeOut) {
   const Masters::Id silent = come();
   const Masters::Id plc = come();
   now_ += minute - 1;
@@ -123,7 +123,7 @@ TEST_F(Places, WhoAsksNothingIsDropped) {
   EXPECT_TRUE(masters_.has(plc));
 }
 
-TEST_F(Places, HalfARequestIsDroppedWhenAnotherConnectionWrites) {
+TEST_F(Places, ClosesOtherConnectionsWithIncompleteRequests) {
   const Masters::Id whole = come();
   const Masters::Id half = come();
   const Masters::Id writer = come("10.0.0.2");
@@ -134,7 +134,7 @@ TEST_F(Places, HalfARequestIsDroppedWhenAnotherConnectionWrites) {
   EXPECT_FALSE(masters_.has(half));
 }
 
-TEST_F(Places, ALaterConnectionOfAnAddressBeginsWhereTheLastOneWas) {
+TEST_F(Places, ANewConnectionContinuesTheCounterOfTheAddress) {
   const Masters::Id first = come();
   EXPECT_FALSE(masters_.find(first)->cursor.at);
   masters_.find(first)->cursor.at = 7;
@@ -145,7 +145,7 @@ TEST_F(Places, ALaterConnectionOfAnAddressBeginsWhereTheLastOneWas) {
   EXPECT_FALSE(masters_.find(come("10.0.0.2"))->cursor.at);
 }
 
-TEST_F(Places, AnAddressLosesItsStepOnAllConnections) {
+TEST_F(Places, LosingSynchronisationAffectsAllConnectionsOfTheAddress) {
   const Masters::Id first = come();
   const Masters::Id other = come("10.0.0.2");
   for (const Masters::Id id : {first, other}) {
@@ -161,7 +161,7 @@ TEST_F(Places, AnAddressLosesItsStepOnAllConnections) {
   EXPECT_FALSE(masters_.find(come())->cursor.at);
 }
 
-TEST_F(Places, AHeartbeatIsAChangeOnOneConnection) {
+TEST_F(Places, AHeartbeatIsAChangedValueOnOneConnection) {
   const Masters::Id first = come();
   const Masters::Id second = come();
   const Masters::Id other = come("10.0.0.2");
@@ -177,7 +177,7 @@ TEST_F(Places, AHeartbeatIsAChangeOnOneConnection) {
   EXPECT_TRUE(beats(other, 6));
 }
 
-TEST(Written, HoldsNoCommandAtFirst) {
+TEST(Written, ContainsNoCommandInitially) {
   Master master;
   EXPECT_EQ(command_in(master.written), Command{});
   at(master.written, Name::command) = 1;

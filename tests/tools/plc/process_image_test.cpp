@@ -39,7 +39,7 @@ Json status() {
        "squeeze_kpa": null, "validity": "stale"}]})");
 }
 
-TEST_F(ProcessImage, AStatusStandsInItsRegisters) {
+TEST_F(ProcessImage, WritesTheStatusToTheRegisters) {
   show_status(status(), settings_.registers, registers_);
   EXPECT_EQ(value(Name::map_version), version_of_map);
   EXPECT_EQ(value(Name::state), 4);
@@ -58,7 +58,7 @@ TEST_F(ProcessImage, AStatusStandsInItsRegisters) {
   EXPECT_EQ(value(Name::finger_valid, 1), 0);
 }
 
-TEST_F(ProcessImage, WithoutADaemonNothingOfItIsLeft) {
+TEST_F(ProcessImage, ClearsTheRegistersWithoutADaemon) {
   show_status(status(), settings_.registers, registers_);
   show_no_daemon(settings_.registers, registers_);
   EXPECT_EQ(value(Name::state), 0);
@@ -83,14 +83,14 @@ TEST_F(ProcessImage, ACommandBecomesARequest) {
   }
 }
 
-TEST_F(ProcessImage, ARefusalKeepsItsNumber) {
+TEST_F(ProcessImage, ConvertsARefusalToAReasonCode) {
   EXPECT_EQ(static_cast<int>(reason_of({{"code", "refused"}, {"refusal", {{"code", "R06"}}}})), 106);
   EXPECT_EQ(reason_of({{"code", "sequence_refused"}}), Reason::sequence_refused);
   EXPECT_EQ(reason_of({{"code", "owned"}}), Reason::not_allowed);
   EXPECT_EQ(reason_of({{"code", "busy"}}), Reason::busy);
 }
 
-TEST_F(ProcessImage, TheMasterWritesCommandsAndNothingElse) {
+TEST_F(ProcessImage, OnlyCommandRegistersAreWritable) {
   const auto written = [this](std::uint16_t address) {
     const modbus::Bytes pdu{6, static_cast<std::uint8_t>(address >> 8U), static_cast<std::uint8_t>(address),
                             0, 1};
@@ -102,7 +102,7 @@ TEST_F(ProcessImage, TheMasterWritesCommandsAndNothingElse) {
   EXPECT_FALSE(written(50));
 }
 
-TEST(Writes, KnowsWhichRegistersARequestReaches) {
+TEST(Writes, FindsTheRegistersThatARequestWrites) {
   const modbus::Bytes single{6, 0, 5, 0, 1};
   EXPECT_TRUE(writes(single, 5));
   EXPECT_FALSE(writes(single, 4));

@@ -41,7 +41,7 @@ class RecordingPicture : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("softgrip_picture_" + std::to_string(::getpid()));
 };
 
-TEST_F(RecordingPicture, SplitsChannelsAndKeepsWhatHappened) {
+TEST_F(RecordingPicture, SplitsChannelsAndShowsEvents) {
   write("run.csv", csv);
   write("run.json", R"({"software_version": "1", "sequence": {"name": "pick <b>"},
       "events": [{"time_s": 0.01, "kind": "grip_result", "channel": "left", "code": "HOLDING", "text": "x"}, {"x": 1}]})");
@@ -71,7 +71,7 @@ TEST_F(RecordingPicture, SplitsChannelsAndKeepsWhatHappened) {
 
 // During a grip, the reference is beyond the surface of the object. The finger stops 4 mm before the
 // reference, so these 4 mm are not a tracking error.
-TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
+TEST_F(RecordingPicture, ExcludesGripsFromTheTrackingErrorInFreeMotion) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
         "0,0,0,,resynchronising,0,none\n"
@@ -99,7 +99,7 @@ TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
 }
 
 // If a grip finds no object, the whole grip is a free motion.
-TEST_F(RecordingPicture, AGripThatFoundNothingIsFreeMotion) {
+TEST_F(RecordingPicture, AGripWithoutAPartCountsAsFreeMotion) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
         "0,10,6,6,running,0,none\n"
@@ -113,7 +113,7 @@ TEST_F(RecordingPicture, AGripThatFoundNothingIsFreeMotion) {
   EXPECT_EQ(tracking.gripping_samples, 0U);
 }
 
-TEST_F(RecordingPicture, OneThatWasCutOffStillOpens) {
+TEST_F(RecordingPicture, ReadsATruncatedRecording) {
   write("run.csv", csv + "0.03,left,3");
   write("run.json", "{\"schema\": 1, \"eve");
   const auto recording = read();
@@ -123,7 +123,7 @@ TEST_F(RecordingPicture, OneThatWasCutOffStillOpens) {
   EXPECT_NE(sysid::svg_file_of(figure_of(*recording)).find("left: pressure"), std::string::npos);
 }
 
-TEST_F(RecordingPicture, APlainLogHasAPictureToo) {
+TEST_F(RecordingPicture, DrawsALogWithoutEvents) {
   write("run.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1,5,1\n0.2,9,2\n");
   document::Problems problems;
   const auto recording = sysid::read_recording(folder / "run.csv", problems);

@@ -40,7 +40,7 @@ class Verification : public sysid::CommandInFolder {
   }
 };
 
-TEST_F(Verification, WhatWasNotTouchedComesOutAgain) {
+TEST_F(Verification, ReproducesAnUnchangedReport) {
   const auto json = verified(0);
   EXPECT_EQ(json["same"], true);
   EXPECT_GT(json["numbers"], 5000) << "the comparison must include the numbers of all series";
@@ -49,7 +49,7 @@ TEST_F(Verification, WhatWasNotTouchedComesOutAgain) {
   EXPECT_EQ(run("report --verify judged/"), 0) << read("err.txt");
 }
 
-TEST_F(Verification, WhatWasChangedIsNamed) {
+TEST_F(Verification, NamesEveryChangedNumber) {
   const double rmse_mm =
       nlohmann::json::parse(read("report/identify.json"))["validation"]["rmse_mm"]["other"];
   auto report = nlohmann::ordered_json::parse(read("report/identify.json"));
@@ -63,7 +63,7 @@ TEST_F(Verification, WhatWasChangedIsNamed) {
   EXPECT_EQ(json["differences"][1]["where"], "model.yaml: bouc_wen.alpha_mm_per_kpa");
 }
 
-TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
+TEST_F(Verification, RefusesAMissingOrModifiedLogWithTheHash) {
   const std::string sha = nlohmann::json::parse(read("report/identify.json"))["logs"][0]["sha256"];
   std::filesystem::create_directory(folder_ / "elsewhere");
   std::filesystem::rename(folder_ / "fit.csv", folder_ / "elsewhere/fit.csv");
@@ -77,7 +77,7 @@ TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
       << "the log is found next to the report, regardless of the file at its old path";
 }
 
-TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {
+TEST_F(Verification, RefusesAReportWithoutTheCommandThatWroteTheReport) {
   replace("report/identify.json", "\"call\"", "\"called\"");
   EXPECT_NE(
       verified(3)["missing"][0].get<std::string>().find("does not contain the command that wrote this file"),
@@ -86,7 +86,7 @@ TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {
   EXPECT_EQ(run("report"), 2);
 }
 
-TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
+TEST_F(Verification, RefusesACommandThatWritesToAnotherFolder) {
   replace("report/identify.json", "\"--starts\"", "\"--out=/tmp\"");
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key `call`"), std::string::npos);
 }
@@ -168,7 +168,7 @@ TEST(Comparison, NamesEveryNumberOfAJsonThatDiffers) {
   EXPECT_EQ(other.differences[3].recomputed, "0.2001");
 }
 
-TEST(Comparison, TheToleranceIsRelativeAndTimesDoNotCount) {
+TEST(Comparison, ToleranceIsRelativeAndRunTimesPathsAndVersionsAreIgnored) {
   const Json was{
       {"value", 1000.0}, {"wall_s", 3}, {"software", "a"}, {"logs", {{{"path", "x"}, {"samples", 9}}}}};
   const Json is{
@@ -180,7 +180,7 @@ TEST(Comparison, TheToleranceIsRelativeAndTimesDoNotCount) {
   EXPECT_EQ(places(narrow), std::vector<std::string>{"f.json: value"});
 }
 
-TEST(Comparison, OfACsvTheWorstLineOfEachColumnIsTold) {
+TEST(Comparison, NamesTheWorstCsvLineOfEachColumn) {
   const std::string was = "t,y\n0,1\n1,2\n2,\n";
   Comparison comparison{1e-6, 0, {}};
   compare_csv("s.csv", was, "t,y\n0,1.1\n1,2.5\n2,\n", comparison);

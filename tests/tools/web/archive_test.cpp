@@ -46,7 +46,7 @@ class ArchiveTest : public ::testing::Test {
   Archive archive_{folder_};
 };
 
-TEST_F(ArchiveTest, ListsOpensAndReads) {
+TEST_F(ArchiveTest, ListsOpensAndReadsRecordings) {
   EXPECT_EQ(done({.kind = DiskRequest::Kind::listing})->text(),
             R"({"recordings":[{"name":"one","files":["run.csv"]}]})");
   const auto file = done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"})->file();
@@ -63,14 +63,14 @@ TEST_F(ArchiveTest, ListsOpensAndReads) {
   EXPECT_FALSE(done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "none.csv"})->file());
 }
 
-TEST_F(ArchiveTest, TellsTheLastHealth) {
+TEST_F(ArchiveTest, ReturnsTheLastHealthResult) {
   EXPECT_TRUE(done({.kind = DiskRequest::Kind::health})->health().is_null());
   fs::create_directories(folder_ / "health");
   std::ofstream(folder_ / "health" / "health.json") << R"({"made_unix_s": 7, "fingers": []})";
   EXPECT_EQ(done({.kind = DiskRequest::Kind::health})->health()["made_unix_s"], 7);
 }
 
-TEST_F(ArchiveTest, AListIsNoOlderThanItsQuestion) {
+TEST_F(ArchiveTest, AListIsNotOlderThanTheRequest) {
   for (int i = 0; i < 5; ++i) {
     const std::string name = "new-" + std::to_string(i);
     fs::create_directories(folder_ / name);
@@ -79,7 +79,7 @@ TEST_F(ArchiveTest, AListIsNoOlderThanItsQuestion) {
   }
 }
 
-TEST_F(ArchiveTest, ManyWhoAskAtOnceGetTheSameList) {
+TEST_F(ArchiveTest, SimultaneousRequestsShareOneList) {
   std::vector<std::shared_ptr<const DiskTask>> asked;
   for (int i = 0; i < 1000; ++i) asked.push_back(archive_.ask({.kind = DiskRequest::Kind::listing}));
   std::size_t lists = 0;
@@ -92,7 +92,7 @@ TEST_F(ArchiveTest, ManyWhoAskAtOnceGetTheSameList) {
   EXPECT_LE(lists, 3U) << "each list must be built only once for all clients";
 }
 
-TEST_F(ArchiveTest, WhoeverGoesCostsNothing) {
+TEST_F(ArchiveTest, AbandonedTasksDoNotBlockALaterTask) {
   for (int i = 0; i < 1000; ++i) {
     static_cast<void>(archive_.ask({.kind = DiskRequest::Kind::listing}));
     static_cast<void>(archive_.ask({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"}));
@@ -100,7 +100,7 @@ TEST_F(ArchiveTest, WhoeverGoesCostsNothing) {
   EXPECT_TRUE(done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"})->file());
 }
 
-TEST_F(ArchiveTest, EndsWithQuestionsOpen) {
+TEST_F(ArchiveTest, EndsWithPendingTasks) {
   std::shared_ptr<const DiskTask> open;
   {
     Archive other(folder_);

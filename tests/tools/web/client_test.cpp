@@ -43,7 +43,7 @@ class ClientTest : public ::testing::Test {
   Descriptor other_;
 };
 
-TEST_F(ClientTest, AsksInPiecesAndGetsOneAnswer) {
+TEST_F(ClientTest, AssemblesARequestFromPiecesAndSendsTheResponse) {
   say("GET / ");
   EXPECT_TRUE(client_.receive());
   say("HTTP/1.1\r\n\r\n");
@@ -54,13 +54,13 @@ TEST_F(ClientTest, AsksInPiecesAndGetsOneAnswer) {
   EXPECT_EQ(heard(), "good");
 }
 
-TEST_F(ClientTest, WhoHasGoneIsNoticed) {
+TEST_F(ClientTest, DetectsAClosedConnection) {
   client_.answer("hello", Phase::following, 0);
   other_.reset();
   EXPECT_FALSE(client_.receive());
 }
 
-TEST_F(ClientTest, WhoSaysNoMoreStillGetsHisAnswer) {
+TEST_F(ClientTest, AHalfClosedConnectionStillReceivesTheResponse) {
   say("GET / HTTP/1.1\r\n\r\n");
   ASSERT_EQ(::shutdown(other_.get(), SHUT_WR), 0);
   EXPECT_TRUE(client_.receive());
@@ -73,7 +73,7 @@ TEST_F(ClientTest, WhoSaysNoMoreStillGetsHisAnswer) {
   EXPECT_FALSE(client_.receive()) << "if a read ends without data a second time, the connection is broken";
 }
 
-TEST_F(ClientTest, WhoNeverStopsSendingHasATurnThatEnds) {
+TEST_F(ClientTest, ReceivesALimitedNumberOfBytesPerCycle) {
   const int large = 1 << 22;
   ::setsockopt(other_.get(), SOL_SOCKET, SO_SNDBUF, &large, sizeof large);
   std::size_t said = 0;
@@ -101,7 +101,7 @@ TEST_F(ClientTest, AFileIsSentInPieces) {
   EXPECT_EQ(heard(), "head-one-two");
 }
 
-TEST_F(ClientTest, WhoReadsFastLeavesTheOthersTheirTurn) {
+TEST_F(ClientTest, SendsALimitedNumberOfBytesPerCycle) {
   const int large = 1 << 22;
   ::setsockopt(client_.descriptor(), SOL_SOCKET, SO_SNDBUF, &large, sizeof large);
   client_.answer(std::string(2 * Client::most_at_once, 'x'), Phase::answering, 0);
@@ -109,7 +109,7 @@ TEST_F(ClientTest, WhoReadsFastLeavesTheOthersTheirTurn) {
   EXPECT_GE(client_.unsent(), Client::most_at_once);
 }
 
-TEST_F(ClientTest, KeepsNoMoreOfAQuestionThanThereMayBe) {
+TEST_F(ClientTest, LimitsTheStoredBytesOfARequest) {
   for (int i = 0; i < 100; ++i) {
     say(std::string(4000, 'x'));
     EXPECT_TRUE(client_.receive());
@@ -117,7 +117,7 @@ TEST_F(ClientTest, KeepsNoMoreOfAQuestionThanThereMayBe) {
   EXPECT_LT(client_.request().size(), 40000U);
 }
 
-TEST_F(ClientTest, WhoIsSlowIsLate) {
+TEST_F(ClientTest, ASlowClientExceedsTheTimeLimit) {
   EXPECT_FALSE(client_.late(Client::longest_question));
   EXPECT_TRUE(client_.late(Client::longest_question + 1));
   client_.wait();
@@ -130,7 +130,7 @@ TEST_F(ClientTest, WhoIsSlowIsLate) {
   EXPECT_TRUE(client_.late(Client::longest_pause + 1));
 }
 
-TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
+TEST_F(ClientTest, AClientThatReadsSlowlyExceedsTheTotalTimeLimit) {
   client_.answer(std::string(1U << 24U, 'x'), Phase::answering, 0);
   Nanoseconds now = 0;
   for (; !client_.late(now) && now < 200 * ns_per_s; now += ns_per_s) {
@@ -143,7 +143,7 @@ TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
   EXPECT_LE(now, Client::longest_answer + 2 * ns_per_s);
 }
 
-TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
+TEST_F(ClientTest, LimitsTheUnreadBytesOfAStream) {
   client_.answer("hello", Phase::following, 0);
   EXPECT_EQ(client_.phase(), Phase::following);
   EXPECT_TRUE(client_.send_on(0));
@@ -154,7 +154,7 @@ TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
   EXPECT_TRUE(client_.late(Client::longest_pause + 1));
 }
 
-TEST_F(ClientTest, AStreamEndsBehindWhatStillWaits) {
+TEST_F(ClientTest, AStreamEndsAfterAllPendingBytesAreSent) {
   client_.answer("hello", Phase::following, 0);
   client_.finish();
   EXPECT_TRUE(client_.add("!"));
@@ -167,13 +167,13 @@ using State = Frame::State;
 const std::string get = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
 const std::string post = "POST /api/command HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n{}";
 
-TEST(RequestFrame, ARequestEndsWhereItSays) {
+TEST(RequestFrame, ARequestEndsAtTheGivenContentLength) {
   EXPECT_EQ(frame_of(get).state, State::complete);
   EXPECT_EQ(frame_of(get).size, get.size());
   EXPECT_EQ(frame_of(post + "GET").size, post.size());
 }
 
-TEST(RequestFrame, WhatHasNotComeYetIsWaitedFor) {
+TEST(RequestFrame, ATruncatedRequestIsIncomplete) {
   for (const std::string& whole : {get, post}) {
     for (std::size_t length = 0; length < whole.size(); ++length)
       EXPECT_EQ(frame_of(whole.substr(0, length)).state, State::incomplete) << length;
@@ -186,7 +186,7 @@ struct Case {
 };
 class RefusedRequest : public ::testing::TestWithParam<Case> {};
 
-TEST_P(RefusedRequest, ByItsStatus) {
+TEST_P(RefusedRequest, HasTheExpectedHttpStatus) {
   const Frame frame = frame_of(std::string(GetParam().text) + "\r\n\r\n");
   EXPECT_EQ(frame.state, State::refused);
   EXPECT_EQ(frame.status, GetParam().status);
@@ -208,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"POST / HTTP/1.1\r\nContent-Length: 99999999999999999999999", 400},
         Case{"POST / HTTP/1.1\r\nContent-Length: 16385", 413}));
 
-TEST(RequestFrame, HeadsHaveABound) {
+TEST(RequestFrame, LimitsTheTargetAndTheHeaders) {
   EXPECT_EQ(frame_of("GET /" + std::string(longest_target, 'a') + " HTTP/1.1\r\n\r\n").status, 414);
   EXPECT_EQ(frame_of("GET / HTTP/1.1\r\nX: " + std::string(longest_head, 'a')).status, 431);
   std::string many = "GET / HTTP/1.1\r\n";
@@ -219,7 +219,7 @@ TEST(RequestFrame, HeadsHaveABound) {
 }
 
 /// The fuzz target aborts if a checked property does not hold, and the test then fails.
-TEST(RequestFrame, TheSeedsOfTheFuzzTargetAreServedWholeAndCutOff) {
+TEST(RequestFrame, CompleteAndTruncatedFuzzSeedsViolateNoProperty) {
   std::size_t seeds = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(SOFTGRIP_SOURCE_DIR "/tests/tools/web/web_request_corpus")) {

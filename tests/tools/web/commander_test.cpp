@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(CommandInABody, IsOneThatTheDaemonHas) {
+TEST(CommandInABody, AcceptsStopAndStartCommands) {
   for (const char* good : {R"({"command":"stop"})", R"({"command":"start","sequence":"pick"})",
                            R"({"command":"start","sequence":"pick","parameters":{"squeeze_kpa":4.5}})"}) {
     const auto command = command_in(good);
@@ -24,7 +24,7 @@ TEST(CommandInABody, IsOneThatTheDaemonHas) {
   }
 }
 
-TEST(CommandInABody, NothingElseComesThrough) {
+TEST(CommandInABody, RefusesEveryOtherBody) {
   for (const std::string& bad :
        {std::string(), std::string("[]"), std::string("{"), std::string("\"stop\""),
         std::string(R"({"command":"subscribe"})"), std::string(R"({"command":7})"),
@@ -40,7 +40,7 @@ TEST(CommandInABody, NothingElseComesThrough) {
     EXPECT_FALSE(command_in(bad)) << bad;
 }
 
-TEST(Commander, WithoutADaemonItSaysSo) {
+TEST(Commander, RefusesACommandWithoutADaemonOrASocket) {
   const std::string nowhere = "/nowhere/softgripd.sock";
   Commander commander(nowhere);
   const auto sent = commander.send({{"command", "stop"}}, 0);
@@ -51,7 +51,7 @@ TEST(Commander, WithoutADaemonItSaysSo) {
   EXPECT_EQ(looking.send({{"command", "stop"}}, 0).error()["error"]["code"], "not_allowed");
 }
 
-TEST(Commander, StartsThatWaitKeepNoStopFromTheDaemon) {
+TEST(Commander, PendingStartsDoNotBlockAStopOrAVent) {
   const std::string path = "/tmp/commander_" + std::to_string(::getpid());
   const auto daemon = net::listen_unix(path);
   ASSERT_TRUE(daemon) << daemon.error();
@@ -73,7 +73,7 @@ TEST(Commander, StartsThatWaitKeepNoStopFromTheDaemon) {
   ::unlink(path.c_str());
 }
 
-TEST(Commander, ADaemonThatHangsHoldsNoOne) {
+TEST(Commander, ReportsADaemonThatDoesNotReply) {
   const std::string path = "/tmp/commander_hangs_" + std::to_string(::getpid());
   const auto daemon = net::listen_unix(path);
   ASSERT_TRUE(daemon) << daemon.error();
@@ -159,7 +159,7 @@ class CommanderTest : public ::testing::Test {
   Nanoseconds now_ = 100 * ns_per_s;
 };
 
-TEST_F(CommanderTest, EachStartHasAnIdOfItsOwnAndNothingElseHasOne) {
+TEST_F(CommanderTest, OnlyStartsHaveAUniqueStartId) {
   start();
   start();
   EXPECT_TRUE(commander_.send({{"command", "stop"}}, now_));
@@ -185,7 +185,7 @@ TEST_F(CommanderTest, AStartWithoutAnAnswerIsStopped) {
   expect_no_stop_any_more();
 }
 
-TEST_F(CommanderTest, AStartThatItsBrowserForgetsIsStopped) {
+TEST_F(CommanderTest, StopsAStartWhoseClientDisconnects) {
   const std::uint64_t waits = start();
   const Json line = heard().at(0);
   EXPECT_TRUE(commander_.is_open_start(waits));
@@ -200,7 +200,7 @@ TEST_F(CommanderTest, AStartThatItsBrowserForgetsIsStopped) {
   expect_no_stop_any_more();
 }
 
-TEST_F(CommanderTest, AStartWhoseOutcomeIsHeardGoesOn) {
+TEST_F(CommanderTest, DoesNotStopAStartWhoseOutcomeIsKnown) {
   const std::uint64_t accepted = start();
   reply(heard().at(0), accepted_);
   EXPECT_EQ(commander_.take_answer(accepted, now_)->at("ok"), true);
@@ -212,7 +212,7 @@ TEST_F(CommanderTest, AStartWhoseOutcomeIsHeardGoesOn) {
   expect_no_stop_any_more();
 }
 
-TEST_F(CommanderTest, AStartThatASilentLoopMayStillBeginIsStopped) {
+TEST_F(CommanderTest, StopsAStartThatTheControlLoopDidNotConfirm) {
   const std::uint64_t number = start();
   const Json line = heard().at(0);
   reply(line, {{"ok", false}, {"error", {{"code", "no_answer"}, {"message", ""}}}});
@@ -224,7 +224,7 @@ TEST_F(CommanderTest, AStartThatASilentLoopMayStillBeginIsStopped) {
   expect_no_stop_any_more();
 }
 
-TEST_F(CommanderTest, AStopWaitsForTheNextConnection) {
+TEST_F(CommanderTest, SendsAPendingStopAfterReconnecting) {
   const std::uint64_t number = start();
   const Json line = heard().at(0);
   client_.reset();

@@ -36,7 +36,7 @@ TEST(LiveState, KeepsTheLastMinute) {
   EXPECT_EQ(greeting_of(state)["trend"].size(), 1U) << "the trend must begin again with a new daemon";
 }
 
-TEST(LiveState, NewsAreToldOnceAndDoNotGrowUnread) {
+TEST(LiveState, SendsEachMessageOnceAndLimitsUnreadMessages) {
   LiveState state;
   EXPECT_EQ(state.take_news(), "");
   state.take_status(status_at(1));
@@ -50,7 +50,7 @@ TEST(LiveState, NewsAreToldOnceAndDoNotGrowUnread) {
   EXPECT_EQ(greeting_of(state)["events"].size(), LiveState::events_kept);
 }
 
-TEST(LiveState, WithoutADaemonNothingOfItIsKnown) {
+TEST(LiveState, ClearsTheStatusWithoutADaemonButKeepsTheEvents) {
   LiveState state;
   state.take_status(status_at(1));
   state.take_statistics({{"loop", {}}});
@@ -64,7 +64,7 @@ TEST(LiveState, WithoutADaemonNothingOfItIsKnown) {
   EXPECT_EQ(state.take_news(), "");
 }
 
-TEST(LiveState, NoLineThatPassesTheCheckStopsItOrTheMetrics) {
+TEST(LiveState, EveryAcceptedReplyIsProcessedWithoutException) {
   LiveState state;
   for (const Json& good : tools::testing::good_lines()) {
     for (const Json& bad : tools::testing::damaged(good)) {

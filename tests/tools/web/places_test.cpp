@@ -14,7 +14,7 @@ constexpr Nanoseconds now = 100 * ns_per_s;
 constexpr Nanoseconds just = now - 1;
 constexpr Nanoseconds long_ago = now - long_pause - 1;
 
-TEST(Places, LeaveADescriptorForEveryFile) {
+TEST(Places, ConnectionsUseLessThanHalfOfTheDescriptors) {
   EXPECT_EQ(places_for(64, 1024), 64U);
   EXPECT_EQ(places_for(512, 2048), 512U);
   EXPECT_EQ(places_for(64, 64), 20U);
@@ -23,11 +23,11 @@ TEST(Places, LeaveADescriptorForEveryFile) {
     ASSERT_LT(2 * places_for(512, descriptors), descriptors) << descriptors;
 }
 
-TEST(Places, SomeAreForRequestsThatAreAnsweredAtOnce) {
+TEST(Places, ReservesConnectionsForBriefRequests) {
   for (std::size_t places = 4; places <= 512; ++places) EXPECT_LT(lingering_places(places), places);
 }
 
-TEST(Places, ANewcomerGetsThatOfTheSlowestQuestion) {
+TEST(Places, ANewClientReplacesTheOneWithTheSlowestRequest) {
   EXPECT_FALSE(gives_way_to_newcomer({}, now));
   EXPECT_FALSE(gives_way_to_newcomer({{Stay::asking, Role::none, just, 0}}, now));
   const std::vector<Guest> guests{{Stay::brief, Role::look, 0, 0},
@@ -37,7 +37,7 @@ TEST(Places, ANewcomerGetsThatOfTheSlowestQuestion) {
   EXPECT_EQ(gives_way_to_newcomer(guests, now), 3U);
 }
 
-TEST(Places, AViewerMakesNoOneLeaveWhoTakesWhatHeIsSent) {
+TEST(Places, AViewerReplacesNoReadingClientAndNoOperator) {
   const std::vector<Guest> guests{{Stay::lingering, Role::look, long_ago, 0},  // an open page, without
                                                                                // progress for a long time
                                   {Stay::lingering, Role::look, just, 100},    // a download that makes
@@ -48,21 +48,21 @@ TEST(Places, AViewerMakesNoOneLeaveWhoTakesWhatHeIsSent) {
   EXPECT_FALSE(gives_way_to_lingering(guests, Role::look, now));
 }
 
-TEST(Places, AViewerGetsThatOfOneWhoTakesNothing) {
+TEST(Places, AViewerReplacesAViewerThatDoesNotRead) {
   const std::vector<Guest> guests{{Stay::lingering, Role::look, long_ago, 100},
                                   {Stay::lingering, Role::look, long_ago - 1, 1},
                                   {Stay::lingering, Role::look, just, 100'000}};
   EXPECT_EQ(gives_way_to_lingering(guests, Role::look, now), 1U);
 }
 
-TEST(Places, AnOperatorGetsThatOfAViewer) {
+TEST(Places, AnOperatorReplacesTheMostIdleViewer) {
   const std::vector<Guest> guests{{Stay::lingering, Role::operate, 0, 100},
                                   {Stay::lingering, Role::look, just, 0},
                                   {Stay::lingering, Role::look, long_ago, 0}};
   EXPECT_EQ(gives_way_to_lingering(guests, Role::operate, now), 2U);
 }
 
-TEST(Places, NoOneWithAHigherRoleEverGivesWay) {
+TEST(Places, NoClientWithAHigherRoleIsReplaced) {
   constexpr unsigned seed = 478;
   std::mt19937 random(seed);
   std::size_t found = 0;
@@ -84,7 +84,7 @@ TEST(Places, NoOneWithAHigherRoleEverGivesWay) {
   EXPECT_GT(found, 5000U);
 }
 
-TEST(Bytes, OfHimWhoHasTakenNothingForLongestGoFirst) {
+TEST(Bytes, FreesTheBytesOfTheMostIdleClientFirst) {
   EXPECT_FALSE(gives_way_for_bytes({{Stay::lingering, Role::look, 0, 0}}, Role::operate))
       << "this client has no unread bytes";
   EXPECT_FALSE(gives_way_for_bytes({{Stay::lingering, Role::operate, 0, 9}}, Role::look));
@@ -95,7 +95,7 @@ TEST(Bytes, OfHimWhoHasTakenNothingForLongestGoFirst) {
   EXPECT_EQ(unsent_of(guests), 9'002'000U);
 }
 
-TEST(Bytes, RoomIsAlwaysFoundForAnOperator) {
+TEST(Bytes, ReplacesOperatorsUntilTheByteLimitIsMet) {
   std::vector<Guest> guests(600, {Stay::lingering, Role::operate, just, std::size_t{1} << 20U});
   while (unsent_of(guests) > most_unsent) {
     const Victim victim = gives_way_for_bytes(guests, Role::operate);

@@ -39,7 +39,7 @@ class RecordingsTest : public ::testing::Test {
   Recordings recordings_{folder_};
 };
 
-TEST_F(RecordingsTest, TheNewestComeFirstWithWhatIsShown) {
+TEST_F(RecordingsTest, ListsTheNewestFirstWithTheirViewableFiles) {
   EXPECT_EQ(list(), "[]");
   add("2026-01-01", "run.csv");
   add("2026-01-02", "run.csv");
@@ -52,7 +52,7 @@ TEST_F(RecordingsTest, TheNewestComeFirstWithWhatIsShown) {
       R"([{"name":"2026-01-02","files":["a.svg","run.csv"]},{"name":"2026-01-01","files":["run.csv"]}])");
 }
 
-TEST_F(RecordingsTest, WithoutAFolderThereIsNone) {
+TEST_F(RecordingsTest, ListsNothingWithoutAFolder) {
   EXPECT_EQ(Recordings({}).list(0).dump(), "[]");
   EXPECT_EQ(Recordings(folder_ / "nowhere").list(0).dump(), "[]");
   add("one", "run.csv");
@@ -61,7 +61,7 @@ TEST_F(RecordingsTest, WithoutAFolderThereIsNone) {
   EXPECT_EQ(list(), "[]");
 }
 
-TEST_F(RecordingsTest, AListReadsOnlyWhatHasChanged) {
+TEST_F(RecordingsTest, ReadsOnlyChangedFolders) {
   for (int i = 0; i < 300; ++i) add("run-" + std::to_string(1000 + i), i % 2 == 0 ? "run.csv" : "run.mcap");
   const std::string first = list();
   EXPECT_EQ(recordings_.folders_read(), 1U + 300U);
@@ -100,7 +100,7 @@ TEST_F(RecordingsTest, AFolderThatHasJustChangedIsReadAgain) {
       << "the time stamp of the folder is too coarse to exclude a second change";
 }
 
-TEST_F(RecordingsTest, OfVeryManyFoldersTheNewestAreSeen) {
+TEST_F(RecordingsTest, ConsidersOnlyTheNewestFolders) {
   for (std::size_t i = 0; i < 2 * Recordings::most_considered + 10; ++i)
     fs::create_directory(folder_ / ("run-" + std::to_string(100'000 + i)));
   add("run-0", "run.csv");
@@ -111,7 +111,7 @@ TEST_F(RecordingsTest, OfVeryManyFoldersTheNewestAreSeen) {
   EXPECT_EQ(recordings_.folders_read(), 1 + Recordings::most_considered + 2);
 }
 
-TEST_F(RecordingsTest, AListHasAnEnd) {
+TEST_F(RecordingsTest, LimitsTheNumberOfRecordingsAndFiles) {
   for (std::size_t i = 0; i < Recordings::most_listed + 50; ++i)
     add("run-" + std::to_string(1000 + i), "run.csv");
   for (int i = 0; i < 300; ++i) add("run-9999", std::to_string(1000 + i) + ".csv");
@@ -121,7 +121,7 @@ TEST_F(RecordingsTest, AListHasAnEnd) {
   EXPECT_EQ(list[0]["files"][0], "1000.csv");
 }
 
-TEST_F(RecordingsTest, OthersHaveTheirTurnBetweenTheFolders) {
+TEST_F(RecordingsTest, CallsTheGivenFunctionBetweenFolders) {
   for (int i = 0; i < 20; ++i) add("run-" + std::to_string(i), "run.csv");
   int turns = 0;
   static_cast<void>(recordings_.list(0, [&turns] { ++turns; }));

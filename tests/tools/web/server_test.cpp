@@ -121,27 +121,27 @@ TEST_F(ServerTest, AnswersAndEndsTheConnection) {
   EXPECT_TRUE(ask("GET /page.js HTTP/1.1\r\nHost: localhost\r\n\r\n").ends_with(page_js()));
 }
 
-TEST_F(ServerTest, WhoSaysNothingGivesWayToWhoAsks) {
+TEST_F(ServerTest, ARequestReplacesASilentConnection) {
   std::vector<Descriptor> silent;
   for (std::size_t i = 0; i < settings_.max_connections; ++i) silent.push_back(connect());
   const std::string answer = ask_patiently(get_page);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer;
 }
 
-TEST_F(ServerTest, ACommandWithoutADaemonSaysSo) {
+TEST_F(ServerTest, ACommandWithoutADaemonHasStatus503) {
   const std::string answer = ask(post_stop);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 503")) << answer;
   EXPECT_NE(answer.find("no_daemon"), std::string::npos) << answer;
 }
 
-TEST_F(ServerTest, AFileArrivesWhole) {
+TEST_F(ServerTest, SendsALargeFileCompletely) {
   const std::string answer = ask(get_file);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer.substr(0, 200);
   EXPECT_NE(answer.find("Content-Length: " + std::to_string(large_.size()) + "\r\n"), std::string::npos);
   EXPECT_TRUE(answer.ends_with("\r\n\r\n" + large_));
 }
 
-TEST_F(ServerTest, WhoSaysNoMoreGetsWhatTheDiskHas) {
+TEST_F(ServerTest, AHalfClosedConnectionReceivesDataFromDisk) {
   for (const std::string& request :
        {get_file, std::string("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n"),
         std::string("GET /api/recordings HTTP/1.1\r\nHost: localhost\r\n\r\n")}) {
@@ -152,7 +152,7 @@ TEST_F(ServerTest, WhoSaysNoMoreGetsWhatTheDiskHas) {
   }
 }
 
-TEST_F(ServerTest, DownloadsThatAreNotReadLeavePlacesForCommands) {
+TEST_F(ServerTest, UnreadDownloadsDoNotBlockCommands) {
   std::vector<Descriptor> unread;
   for (std::size_t i = 0; i < 3 * settings_.max_connections; ++i) {
     unread.push_back(connect());
@@ -164,7 +164,7 @@ TEST_F(ServerTest, DownloadsThatAreNotReadLeavePlacesForCommands) {
   EXPECT_TRUE(file.ends_with(large_)) << "a client that reads replaces one that does not read";
 }
 
-TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {
+TEST_F(ServerTest, ATruncatedFileEndsTheResponse) {
   const Descriptor socket = connect();
   say(socket, get_file);
   char first = 0;
@@ -212,7 +212,7 @@ class ScriptedDaemon {
   std::string text_;
 };
 
-TEST_F(ServerTest, WhoLeavesBeforeTheAnswerTakesNoCommandFromOthers) {
+TEST_F(ServerTest, DisconnectedClientsDoNotBlockCommandsOfOthers) {
   ScriptedDaemon daemon(settings_.operate_socket);
   for (std::size_t i = 0; i < 3 * Commander::most_waiting; ++i) {
     Descriptor leaving = connect();

@@ -86,7 +86,7 @@ class SiteTest : public ::testing::Test {
   Site site_{settings_, gate_, state_, counts_, "draw()"};
 };
 
-TEST_F(SiteTest, ThePageIsThereForEverybodyAndWhatItShowsIsNot) {
+TEST_F(SiteTest, ThePageIsPublicButTheDataNeedAToken) {
   const Outcome page = get("/");
   EXPECT_EQ(page.status, 200);
   EXPECT_NE(page.bytes.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
@@ -98,7 +98,7 @@ TEST_F(SiteTest, ThePageIsThereForEverybodyAndWhatItShowsIsNot) {
     EXPECT_EQ(get(path).status, 401) << path;
 }
 
-TEST_F(SiteTest, WhoLooksSeesAndWhoOperatesMoves) {
+TEST_F(SiteTest, AViewerReadsAndOnlyAnOperatorSendsCommands) {
   EXPECT_EQ(get("/metrics", look).status, 200);
   EXPECT_EQ(get("/api/status", look).status, 503) << "no daemon has sent a status";
   state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
@@ -111,7 +111,7 @@ TEST_F(SiteTest, WhoLooksSeesAndWhoOperatesMoves) {
   EXPECT_EQ((*asked.command)["command"], "stop");
 }
 
-TEST_F(SiteTest, TheDaemonsAnswerIsTheAnswer) {
+TEST_F(SiteTest, ReturnsTheReplyOfTheDaemon) {
   const Json good{{"ok", true}, {"result", {{"request", 7}}}};
   const Outcome accepted = ask("POST", "/api/command", operate, R"({"command":"stop"})", &good);
   EXPECT_EQ(accepted.status, 200);
@@ -122,7 +122,7 @@ TEST_F(SiteTest, TheDaemonsAnswerIsTheAnswer) {
   EXPECT_NE(refused.bytes.find("not now"), std::string::npos);
 }
 
-TEST_F(SiteTest, OnlyTheFilesOfARecordingThatAreShown) {
+TEST_F(SiteTest, ServesOnlyViewableFilesOfARecording) {
   const Outcome picture = get("/recordings/run-1/picture.svg", look);
   EXPECT_EQ(picture.status, 200);
   EXPECT_NE(picture.bytes.find("<svg/>"), std::string::npos);
@@ -142,7 +142,7 @@ TEST_F(SiteTest, OnlyTheFilesOfARecordingThatAreShown) {
       std::string::npos);
 }
 
-TEST_F(SiteTest, TheHeadTellsTheLengthOfAFileThatFollows) {
+TEST_F(SiteTest, TheHeaderStatesTheLengthOfAFile) {
   const std::string whole(100'000, 'x');
   std::ofstream(folder_ / "run-1" / "long.csv") << whole;
   std::ofstream(folder_ / "run-1" / "empty.csv");
@@ -159,7 +159,7 @@ TEST_F(SiteTest, TheHeadTellsTheLengthOfAFileThatFollows) {
   EXPECT_NE(empty.bytes.find("Content-Length: 0\r\n"), std::string::npos);
 }
 
-TEST_F(SiteTest, ADiskThatDoesNotAnswerIsSaid) {
+TEST_F(SiteTest, AnUnresponsiveDiskCausesStatus503) {
   const DiskTask silent{DiskRequest{}};
   for (const char* path : {"/api/recordings", "/recordings/run-1/picture.svg"}) {
     const std::string request = std::string("GET ") + path + " HTTP/1.1\r\nHost: localhost:1\r\n" +
@@ -171,7 +171,7 @@ TEST_F(SiteTest, ADiskThatDoesNotAnswerIsSaid) {
   }
 }
 
-TEST_F(SiteTest, MetricsDoWithoutADiskThatDoesNotAnswer) {
+TEST_F(SiteTest, MetricsDoNotNeedAResponsiveDisk) {
   state_.take_health({{"made_unix_s", 7}, {"fingers", Json::array()}});
   const DiskTask silent{DiskRequest{}};
   const std::string request =
@@ -182,7 +182,7 @@ TEST_F(SiteTest, MetricsDoWithoutADiskThatDoesNotAnswer) {
   EXPECT_NE(metrics.bytes.find("softgrip_health_timestamp_seconds 7\n"), std::string::npos) << metrics.bytes;
 }
 
-TEST_F(SiteTest, AStreamBeginsWithAllThatThereIs) {
+TEST_F(SiteTest, AStreamBeginsWithTheCurrentStatus) {
   state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
   const Outcome stream = get("/api/stream", look);
   EXPECT_EQ(stream.status, 200);
@@ -194,7 +194,7 @@ TEST_F(SiteTest, AStreamBeginsWithAllThatThereIs) {
   EXPECT_EQ(stream.bytes.find("Content-Length"), std::string::npos);
 }
 
-TEST_F(SiteTest, SessionsAreOpenedByTokensAndClosed) {
+TEST_F(SiteTest, ASessionNeedsAValidToken) {
   EXPECT_EQ(ask("POST", "/api/session", {}, R"({"token":"x"})").status, 403)
       << "the request has no Origin header";
   const auto post = [&](const std::string& body) {
@@ -211,7 +211,7 @@ TEST_F(SiteTest, SessionsAreOpenedByTokensAndClosed) {
   EXPECT_NE(opened.bytes.find("HttpOnly; SameSite=Strict"), std::string::npos);
 }
 
-TEST_F(SiteTest, PartsOfAFileAreNotOffered) {
+TEST_F(SiteTest, IgnoresRangeRequests) {
   std::string ranges = "0-0";
   while (ranges.size() < 7000) ranges += ",0-1";
   const Outcome answered =

@@ -38,7 +38,7 @@ constexpr std::size_t size_of(List<C...>) {
   return sizeof...(C);
 }
 
-TEST(CauseList, AllOfTheRegistryAreKnownByTheirIds) {
+TEST(CauseList, RegisteredCausesAreFoundById) {
   EXPECT_EQ(all_causes().size(), size_of(causes::All{}));
   for (const Cause& cause : all_causes()) EXPECT_EQ(find_cause(cause.id)->id, cause.id);
   EXPECT_FALSE(find_cause("no_such_cause").has_value());
@@ -77,7 +77,7 @@ TEST_P(Causes, StartAsValidModelsOfTheirForm) {
   });
 }
 
-TEST_P(Causes, StartWithinWhatAFitMayDo) {
+TEST_P(Causes, StartValuesLieWithinTheFitRange) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     bool moves = false;
     for (std::size_t i = 0; i < start.values.size(); ++i) {
@@ -96,7 +96,7 @@ TEST_P(Causes, StartWithinWhatAFitMayDo) {
 
 // A form with more than three free parameters can fit almost any curve. The cause must therefore declare it
 // as a free form.
-TEST_P(Causes, MoveFewNumbers) {
+TEST_P(Causes, FitAtMostThreeParametersUnlessFreeForm) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     std::size_t fitted = 0;
     for (std::size_t i = 0; i < start.values.size(); ++i)
@@ -108,7 +108,7 @@ TEST_P(Causes, MoveFewNumbers) {
   });
 }
 
-TEST_P(Causes, AreFoundInAModelAndTakenOut) {
+TEST_P(Causes, AreFoundInAndRemovedFromAModel) {
   each_start([&](const CauseForm&, const model::BlockSpec& start) {
     const model::Model model = with(start);
     const auto at = position_of(model, cause);
@@ -119,7 +119,7 @@ TEST_P(Causes, AreFoundInAModelAndTakenOut) {
   });
 }
 
-TEST_P(Causes, SayWhichColumnTheyNeed) {
+TEST_P(Causes, ReportTheRequiredColumnIfMissing) {
   EXPECT_EQ(unanswerable(cause, scales), "");
   Scales bare = scales;
   bare.has_supply = bare.has_temperature = false;
@@ -134,7 +134,7 @@ TEST_P(Causes, SayWhichColumnTheyNeed) {
 
 // Two causes may be declared as indistinguishable, or as distinguishable by a gauge check only. In both
 // cases, one cause must be a cause of the sensor, and the other one must not.
-TEST_P(Causes, HaveCounterpartsAtTheOtherEnd) {
+TEST_P(Causes, ExactlyOneOfTwoCounterpartsIsASensorCause) {
   const auto at_sensor = [](const Cause& c) { return c.station == model::Station::sensor; };
   for (const Cause& other : sensor_counterparts(cause))
     EXPECT_NE(at_sensor(cause), at_sensor(other)) << other.id;
@@ -144,7 +144,7 @@ TEST_P(Causes, HaveCounterpartsAtTheOtherEnd) {
             cause.counterparts.end());
 }
 
-TEST_P(Causes, ShowAGaugeASensorWhereTheySaySo) {
+TEST_P(Causes, OnlyStaticSensorCausesAreVisibleToAGauge) {
   for (const CauseForm& form : cause.forms) EXPECT_EQ(form.shown_mm != nullptr, cause.is_static_sensor());
   if (cause.is_static_sensor()) {
     EXPECT_EQ(cause.station, model::Station::sensor);
@@ -172,7 +172,7 @@ TEST(Registry, CoversTheCatalogue) {
 
 // For some parameter values, the block of a cause would describe a different cause. The bounds of the fit
 // must exclude these values.
-TEST(Ranges, KeepCausesWhatTheyAreCalled) {
+TEST(Ranges, ExcludeValuesThatDescribeAnotherCause) {
   const Scales scales = typical_scales();
   const auto range = [&](std::string_view id, std::string_view parameter) {
     const Cause cause = *find_cause(id);

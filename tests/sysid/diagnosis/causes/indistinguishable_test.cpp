@@ -26,7 +26,7 @@ model::Model with(const model::Model& model, std::string_view id) {
   return model::with_block(model, model::neutral_block(cause(id).forms.front().type));
 }
 
-TEST(Indistinguishable, AreBentBeforeAndBehindTheLoad) {
+TEST(Indistinguishable, AreOnlyStiffeningAndSensorNonlinearity) {
   const model::Model model = loaded("bench_twin");
   EXPECT_TRUE(are_indistinguishable(cause("stiffening"), cause("sensor_nonlinearity"), model));
   EXPECT_TRUE(are_indistinguishable(cause("sensor_nonlinearity"), cause("stiffening"), model));
@@ -36,7 +36,7 @@ TEST(Indistinguishable, AreBentBeforeAndBehindTheLoad) {
   }
 }
 
-TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
+TEST(Indistinguishable, MemoryBlockSeparatesStiffeningFromTheSensor) {
   for (const char* id : {"inertia", "backlash", "sensor_lag"})
     EXPECT_FALSE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
   for (const char* id : {"transport_delay", "valve_lag", "ageing", "contact", "sensor_drift"})
@@ -73,7 +73,7 @@ class BentRig : public ::testing::Test {
   }
 };
 
-TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
+TEST_F(BentRig, ListsTheIndistinguishableCauseAsAlternative) {
   const Selection& selection = selected();
   ASSERT_FALSE(selection.chosen.empty());
   const ChosenCause& chosen = selection.chosen.front();
@@ -91,7 +91,7 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
   EXPECT_GT(score->rmse_mm, 1.02 * std::sqrt(selection.extended.mean_square_mm2));
 }
 
-TEST_F(BentRig, HasNoWaveformThatTellsThemApart) {
+TEST_F(BentRig, NoWaveformIsProposedForIndistinguishableCauses) {
   const Selection& selection = selected();
   ASSERT_FALSE(selection.chosen.empty());
   Diagnosis d;

@@ -10,7 +10,7 @@ namespace {
 
 // The valve sticks and jumps. For every width of its dead band, one start value must be so close to this
 // width that a fit from there finds the jumps.
-TEST(ValveDeadband, NoStaircaseIsMissed) {
+TEST(ValveDeadband, EveryStickBandHasACloseStartValue) {
   Scales scales;
   scales.largest_kpa = 40;
   const std::vector<double> bands = causes::ValveDeadband::Stiction::bands_kpa(scales);

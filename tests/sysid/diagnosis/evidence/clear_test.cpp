@@ -7,19 +7,19 @@
 namespace softgrip::sysid::clear_test {
 namespace {
 
-TEST(Clear, IsWhatChanceShowsLessThanOnceInFifty) {
+TEST(Clear, RequiresAPValueBelow2Percent) {
   EXPECT_TRUE(is_clear(0, 50));
   EXPECT_TRUE(is_clear(0.0199, 50));
   EXPECT_FALSE(is_clear(0.02, 50));
   EXPECT_FALSE(is_clear(1, 50));
 }
 
-TEST(Clear, IsWorthATwentieth) {
+TEST(Clear, RequiresAtLeast5PercentOfTheVariance) {
   EXPECT_TRUE(is_clear(0.001, 5));
   EXPECT_FALSE(is_clear(0.001, 4.9));
 }
 
-TEST(Clear, WhatWasNotJudgedIsNot) {
+TEST(Clear, MissingValuesAreNeverClear) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(is_clear(nothing, 50));
   EXPECT_FALSE(is_clear(0.001, nothing));

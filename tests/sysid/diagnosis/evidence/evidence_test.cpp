@@ -86,7 +86,7 @@ TEST(Evidence, CorrelatedErrorsRaiseNoMoreFalseAlarms) {
   EXPECT_LE(alarms.line, at_most(0.01));
 }
 
-TEST(Evidence, AnErrorThatFollowsTheRateIsFoundThere) {
+TEST(Evidence, ErrorProportionalToRateIsAttributedToRate) {
   const std::vector<Record> records = known_campaign(3);
   ByRecord residual = noise_for(records, noise_mm, 0, 7);
   for (std::size_t k = 0; k < records.size(); ++k) {
@@ -105,7 +105,7 @@ TEST(Evidence, AnErrorThatFollowsTheRateIsFoundThere) {
   EXPECT_FALSE(of(evidence, "campaign_time").clear);
 }
 
-TEST(Evidence, AnErrorThatGrowsWhileThePressureStandsIsFoundByDwell) {
+TEST(Evidence, ErrorGrowthAtConstantPressureIsAttributedToDwell) {
   const std::vector<Record> records = known_campaign(3);
   ByRecord residual = noise_for(records, noise_mm, 0, 8);
   for (std::size_t k = 0; k < records.size(); ++k) {
@@ -141,7 +141,7 @@ TEST(Evidence, ALineInTheSpectrumIsFoundWithItsAmplitude) {
   EXPECT_GT(spectrum.share_percent, 70);
 }
 
-TEST(Unphysical, AModelThatMovesTheWrongWayFirstIsRecognised) {
+TEST(Unphysical, InverseResponseZeroStiffnessAndSlowCreepAreFlagged) {
   const std::vector<Record> records = known_campaign(1);
   model::Model model = model::with_block({"m", "", {}}, model::default_block(*model::find_block("bouc_wen")));
   model = model::with_block(model, model::default_block(*model::find_block("kelvin_voigt"), 2));

@@ -14,7 +14,7 @@ bool says(const std::vector<std::string>& advice, std::string_view words) {
                      [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; });
 }
 
-TEST(Advice, IsGivenForEveryPairThatNoWaveformTellsApart) {
+TEST(Advice, ExistsForEveryPairOfCauses) {
   for (const Cause& one : all_causes()) {
     for (const Cause& other : all_causes()) {
       if (one == other) continue;
@@ -27,7 +27,7 @@ TEST(Advice, IsGivenForEveryPairThatNoWaveformTellsApart) {
   EXPECT_FALSE(advice_for("none", all_causes().front().id, {}).empty());
 }
 
-TEST(Advice, IsNotNeededWhereAWaveformTells) {
+TEST(Advice, IsEmptyForSeparableCausesUnlessPressureIsMissing) {
   EXPECT_TRUE(advice_for("backlash", "contact", {.separable = true}).empty());
   // If the log has no pressure column, the advice must be to record the pressure, because this is simpler
   // than an experiment.
@@ -35,7 +35,7 @@ TEST(Advice, IsNotNeededWhereAWaveformTells) {
   EXPECT_TRUE(advice_for("valve_lag", "sensor_lag", {.pressure_recorded = true, .separable = true}).empty());
 }
 
-TEST(Advice, IsOfWhatTheTwoHaveInCommon) {
+TEST(Advice, DependsOnThePairOfCausesAndTheData) {
   EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "Change the load"));
   EXPECT_TRUE(
       says(advice_for("stiffening", "contact", {.gauge_made = true}), "The gauge check was not conclusive"));

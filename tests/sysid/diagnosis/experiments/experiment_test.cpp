@@ -122,7 +122,7 @@ TEST(ExperimentMenu, ThreeRatesSpanTwoDecades) {
   }
 }
 
-TEST(ExperimentMenu, EveryEntryIsASequenceThatTheDaemonReadsAsItWasMeant) {
+TEST(ExperimentMenu, DaemonReadsEveryEntryAsTheSameProfile) {
   for (const Waveform& waveform : experiment_menu({57.3, 300})) {
     NextExperiment next;
     next.best = JudgedWaveform{waveform, 1, {}, 1};
@@ -163,7 +163,7 @@ TEST(Experiment, WhitenedNoiseIsWhiteAndOfUnitVariance) {
   EXPECT_NEAR(product / 20000, 0, 0.03);
 }
 
-TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
+TEST(Experiment, SeparatesSofteningFromCreepAsPredicted) {
   const Diagnosis d = ambiguous({"slow_creep"});
   ExperimentOptions options;
   options.limits = RigLimits{58, 300};
@@ -196,7 +196,7 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   EXPECT_GT(json["next_experiment"]["minutes"], 0);
 }
 
-TEST(Experiment, WhatWasRunAlreadyIsNotProposedAgain) {
+TEST(Experiment, CompletedExperimentsAreNotProposedAgain) {
   const Diagnosis d = ambiguous({"slow_creep"});
   ExperimentOptions options;
   options.threads = 1;
@@ -206,7 +206,7 @@ TEST(Experiment, WhatWasRunAlreadyIsNotProposedAgain) {
   EXPECT_TRUE(next.menu.empty());
 }
 
-TEST(Experiment, RefittingTheAlternativeCanOnlyBringItNearer) {
+TEST(Experiment, RefitReducesTheDistanceOfTheAlternative) {
   const Diagnosis d = ambiguous({});
   NoiseModel noise;
   noise.innovation_mm = noise_mm;
@@ -223,7 +223,7 @@ TEST(Experiment, RefittingTheAlternativeCanOnlyBringItNearer) {
   EXPECT_NEAR(truth.linear_distance(record, truth_mm), 0, 1e-6);
 }
 
-TEST(Advice, SaysWhatNoWaveformCanDo) {
+TEST(Advice, NamesTheActionThatSeparatesEachPair) {
   const auto text = [](const char* one, const char* other, const AdviceFacts& facts) {
     std::string all;
     for (const std::string& sentence : advice_for(one, other, facts)) all += sentence + "\n";

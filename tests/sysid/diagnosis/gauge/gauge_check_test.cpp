@@ -58,7 +58,7 @@ const GaugeFit& of(const GaugeCheck& check, const std::string& id) {
                        [&](const GaugeFit& fit) { return fit.shape.id() == id; });
 }
 
-TEST(GaugeCheck, FindsTheBendThatTheLogsAskFor) {
+TEST(GaugeCheck, ConfirmsTheNonlinearityPredictedFromTheLogs) {
   const GaugeCheck check = check_gauge(read(bent(0.4), noise_mm), {{}, bend_of_logs(0.4)}, scales);
   EXPECT_EQ(check.outcome, GaugeOutcome::decided);
   EXPECT_TRUE(of(check, "straight").ruled_out);
@@ -67,7 +67,7 @@ TEST(GaugeCheck, FindsTheBendThatTheLogsAskFor) {
   EXPECT_NEAR(of(check, "sensor_nonlinearity").rms_mm, noise_mm, 0.02);
 }
 
-TEST(GaugeCheck, ClearsAStraightSensor) {
+TEST(GaugeCheck, RulesOutNonlinearityForALinearSensor) {
   for (const double bow_mm : {0.4, -0.4}) {
     const GaugeCheck check = check_gauge(read(straight, noise_mm), {bend_of_logs(bow_mm), {}}, scales);
     EXPECT_EQ(check.outcome, GaugeOutcome::decided);
@@ -77,7 +77,7 @@ TEST(GaugeCheck, ClearsAStraightSensor) {
   }
 }
 
-TEST(GaugeCheck, FindsAnEndOnlyWhereThePositionsReachIt) {
+TEST(GaugeCheck, FindsSaturationOnlyIfThePositionsReachTheLimit) {
   const std::vector<SensorShape> hypotheses{{}, end_of_logs(23)};
   const GaugeScales until_end{noise_mm, 0, 23.1};
   const GaugeCheck reached = check_gauge(read(ending(23), noise_mm), hypotheses, until_end);
@@ -91,21 +91,21 @@ TEST(GaugeCheck, FindsAnEndOnlyWhereThePositionsReachIt) {
   EXPECT_FALSE(of(missed, "straight").ruled_out);
 }
 
-TEST(GaugeCheck, ASensorThatReadsOnHasNoEndThere) {
+TEST(GaugeCheck, LinearReadingBeyondTheLimitRulesOutSaturation) {
   const GaugeCheck check =
       check_gauge(read(straight, noise_mm), {end_of_logs(23), {}}, GaugeScales{noise_mm, 0, 23.1});
   EXPECT_EQ(check.outcome, GaugeOutcome::decided);
   EXPECT_TRUE(of(check, "sensor_saturation").ruled_out);
 }
 
-TEST(GaugeCheck, WhatTheSensorDoesBeyondTheLogsIsNobodysBusiness) {
+TEST(GaugeCheck, SaturationBeyondTheRangeOfTheLogsIsIgnored) {
   const Sensor sensor = [](double y) { return std::min(y, 1.15 * span_mm); };
   const GaugeCheck check = check_gauge(read(sensor, noise_mm), {{}, bend_of_logs(0.4)}, scales);
   EXPECT_EQ(check.outcome, GaugeOutcome::decided);
   EXPECT_TRUE(of(check, "sensor_nonlinearity").ruled_out);
 }
 
-TEST(GaugeCheck, ASensorThatDoesNotFollowSaysNothing) {
+TEST(GaugeCheck, ConstantReadingsOrSmallRangeAreUncovered) {
   const std::vector<double> low{0, 2, 4, 6, 8, 10, 8, 6, 4, 2, 0};
   for (const auto& readings : {read([](double) { return 7; }, noise_mm), read(straight, 0.001, low)}) {
     const GaugeCheck check = check_gauge(readings, {{}, bend_of_logs(2)}, scales);
@@ -114,7 +114,7 @@ TEST(GaugeCheck, ASensorThatDoesNotFollowSaysNothing) {
   }
 }
 
-TEST(GaugeCheck, TooMuchNoiseDecidesNothing) {
+TEST(GaugeCheck, HighNoiseLeavesTheOutcomeUndecided) {
   for (const Sensor& sensor : {Sensor(straight), bent(0.1)}) {
     const GaugeCheck check = check_gauge(read(sensor, 0.4), {{}, bend_of_logs(0.1)}, scales);
     EXPECT_EQ(check.outcome, GaugeOutcome::undecided);
@@ -122,14 +122,14 @@ TEST(GaugeCheck, TooMuchNoiseDecidesNothing) {
   }
 }
 
-TEST(GaugeCheck, TheLogsNoiseCountsWhereReadingsAreSingleSamples) {
+TEST(GaugeCheck, LogNoiseAppliesToSingleSampleReadings) {
   std::vector<GaugeReading> readings = read(bent(0.06), 0);
   EXPECT_EQ(check_gauge(readings, {{}, bend_of_logs(0.06)}, scales).outcome, GaugeOutcome::undecided);
   for (GaugeReading& r : readings) r.samples = 200;
   EXPECT_EQ(check_gauge(readings, {{}, bend_of_logs(0.06)}, scales).outcome, GaugeOutcome::decided);
 }
 
-TEST(GaugeCheck, ABendOfAnotherSizeIsNotThisOne) {
+TEST(GaugeCheck, NonlinearityOfADifferentSizeIsUnexplained) {
   for (const double really_mm : {0.2, 0.8, -0.4}) {
     const GaugeCheck check =
         check_gauge(read(bent(really_mm), 0.01), {{}, bend_of_logs(0.4)}, GaugeScales{0.01, -0.1, span_mm});
@@ -141,7 +141,7 @@ TEST(GaugeCheck, ABendOfAnotherSizeIsNotThisOne) {
   }
 }
 
-TEST(GaugeCheck, BetweenThreeAndSevenTenthsOfTheBendItIsNeither) {
+TEST(GaugeCheck, NonlinearityFarFromBothHypothesesIsUnexplained) {
   const auto check_of = [](double share) {
     return check_gauge(read(bent(0.4 * share), 0.002), {{}, bend_of_logs(0.4)},
                        GaugeScales{0.002, -0.1, span_mm});
@@ -154,7 +154,7 @@ TEST(GaugeCheck, BetweenThreeAndSevenTenthsOfTheBendItIsNeither) {
     EXPECT_EQ(check_of(share).outcome, GaugeOutcome::unexplained) << share;
 }
 
-TEST(GaugeCheck, TellsABendFromAnEnd) {
+TEST(GaugeCheck, SeparatesSaturationFromNonlinearity) {
   const std::vector<SensorShape> hypotheses{{}, bend_of_logs(0.4), end_of_logs(22)};
   const GaugeScales until_end{noise_mm, 0, 22.1};
   const GaugeCheck check = check_gauge(read(ending(22), noise_mm), hypotheses, until_end);
@@ -166,7 +166,7 @@ TEST(GaugeCheck, TellsABendFromAnEnd) {
 
 /// The check gets three hypotheses. One of them is implausible and must be ruled out. The decision between
 /// the other two hypotheses must be the same as without the implausible one.
-TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
+TEST(GaugeCheck, ImplausibleHypothesisDoesNotChangeTheDecision) {
   const std::vector<SensorShape> hypotheses{{}, bend_of_logs(0.4), end_of_logs(15)};
   const GaugeScales fine{0.01, -0.1, span_mm};
   const GaugeCheck half = check_gauge(read(bent(0.2), 0.01), hypotheses, fine);
@@ -182,7 +182,7 @@ TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
 
 /// The only hypothesis is a linear sensor. The check must not reject this hypothesis because of a
 /// nonlinearity that is too small to be visible in the logs.
-TEST(GaugeCheck, AStraightSensorMayBeBentByLessThanAnyLogCouldTell) {
+TEST(GaugeCheck, NonlinearityBelowLogResolutionCountsAsLinear) {
   for (const double bow_mm : {0.02, 0.3}) {
     std::vector<GaugeReading> readings = read(bent(bow_mm), 0.001);
     for (GaugeReading& r : readings) r.samples = 200;
@@ -191,7 +191,7 @@ TEST(GaugeCheck, AStraightSensorMayBeBentByLessThanAnyLogCouldTell) {
   }
 }
 
-TEST(GaugeCheck, AGaugeThatCountsTheOtherWayOrInInchesSaysTheSame) {
+TEST(GaugeCheck, ResultIsIndependentOfGaugeDirectionAndUnit) {
   for (const double scale : {-1.0, 1 / 25.4}) {
     const auto readings = read(bent(0.4), 0.01, planned_positions(span_mm), 7 * scale, scale);
     const GaugeCheck check = check_gauge(readings, {{}, bend_of_logs(0.4)}, scales);
@@ -201,7 +201,7 @@ TEST(GaugeCheck, AGaugeThatCountsTheOtherWayOrInInchesSaysTheSame) {
 }
 
 /// In readings with random noise, the check must rule out the true hypothesis in at most 1 of 300 cases.
-TEST(GaugeCheck, RarelyRulesOutTheTruth) {
+TEST(GaugeCheck, TrueHypothesisIsRuledOutInAtMost1Of300) {
   int wrong = 0, decided = 0;
   for (int draw = 0; draw < 300; ++draw) {
     std::mt19937_64 random(static_cast<std::uint64_t>(draw) + 1000);

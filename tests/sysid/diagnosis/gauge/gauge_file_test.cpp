@@ -18,7 +18,7 @@ std::string problems_of(const std::string& text) {
   return problems.format();
 }
 
-TEST(GaugeFile, TakesPositionsInAnyOrderAgainAndAgainAndIgnoresOtherColumns) {
+TEST(GaugeFile, AcceptsRepeatedUnorderedPositionsAndExtraColumns) {
   document::Problems problems;
   const auto gauge = parse_gauge("gauge.csv",
                                  "note,displacement_mm,gauge_mm\n"
@@ -31,7 +31,7 @@ TEST(GaugeFile, TakesPositionsInAnyOrderAgainAndAgainAndIgnoresOtherColumns) {
   EXPECT_EQ(distinct_positions(gauge->readings), (std::vector<double>{0, 5, 10}));
 }
 
-TEST(GaugeFile, ComesBackAsItWasWritten) {
+TEST(GaugeFile, WrittenFileIsReadBackUnchanged) {
   const std::vector<GaugeReading> readings{{0, 0.1, 200}, {2.5, 2.7, 200}, {1.0 / 3, 0.41, 7}};
   document::Problems problems;
   const auto gauge = parse_gauge("gauge.csv", format_gauge(readings), problems);
@@ -39,7 +39,7 @@ TEST(GaugeFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(gauge->readings, readings);
 }
 
-TEST(GaugeFile, OfABendingAngleIsInDegrees) {
+TEST(GaugeFile, BendingAnglesAreStoredInDegrees) {
   const std::vector<GaugeReading> readings{{0, 0.1, 200}, {22.5, 22.7, 200}, {90, 91, 7}};
   document::Problems problems;
   const std::string text = format_gauge(readings, model::OutputUnit::deg);
@@ -57,7 +57,7 @@ TEST(GaugeFile, OfABendingAngleIsInDegrees) {
   EXPECT_EQ(positions_csv({0, 15}, model::OutputUnit::deg), "gauge_deg,angle_deg\n0,\n15,\n");
 }
 
-TEST(GaugeFile, SaysWhereItIsWrongAndWhatWasMeant) {
+TEST(GaugeFile, ErrorMessagesStateLocationAndCorrection) {
   const std::string header = "gauge_mm,displacement_mm\n";
   const std::map<std::string, std::string> wrong{
       {"", "the file is empty"},
@@ -77,13 +77,13 @@ TEST(GaugeFile, SaysWhereItIsWrongAndWhatWasMeant) {
     EXPECT_NE(problems_of(text).find(message), std::string::npos) << text << problems_of(text);
 }
 
-TEST(GaugeFile, AFileThatIsNotThereIsAProblem) {
+TEST(GaugeFile, MissingFileIsReportedAsAProblem) {
   document::Problems problems;
   EXPECT_FALSE(read_gauge("/nowhere/gauge.csv", problems));
   EXPECT_EQ(problems.size(), 1U);
 }
 
-TEST(PlannedPositions, ReachAThirdBeyondTheLogsInRoundStepsThreeTimes) {
+TEST(PlannedPositions, ExtendBeyondTheLogsAndRepeatThreeTimes) {
   for (const double largest : {0.7, 3.0, 12.4, 24.0, 31.7, 180.0, -24.0}) {
     const std::vector<double> positions = planned_positions(largest);
     std::map<double, int> times;
@@ -100,7 +100,7 @@ TEST(PlannedPositions, ReachAThirdBeyondTheLogsInRoundStepsThreeTimes) {
   EXPECT_TRUE(planned_positions(NAN).empty());
 }
 
-TEST(PlannedPositions, WaitInAFileThatIsRefusedUntilItIsFilledIn) {
+TEST(PlannedPositions, UnfilledPositionFileIsRejected) {
   EXPECT_NE(problems_of(positions_csv(planned_positions(20))).find("empty cell"), std::string::npos)
       << problems_of(positions_csv(planned_positions(20)));
 }

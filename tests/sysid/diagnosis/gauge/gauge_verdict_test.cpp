@@ -103,7 +103,7 @@ void expect_check_proposed(const Diagnosis& before) {
   EXPECT_EQ(json["gauge_check"]["file"], "gauge_positions.csv");
 }
 
-TEST(GaugeVerdict, ABentScaleIsFoundBentAndNamedByTheCheckThatIsProposed) {
+TEST(GaugeVerdict, ProposedGaugeCheckNamesSensorNonlinearity) {
   const Diagnosis before = diagnosed(bent_scale, std::nullopt);
   ASSERT_EQ(before.verdict, Verdict::ambiguous) << verdict_sentence(before);
   expect_check_proposed(before);
@@ -115,7 +115,7 @@ TEST(GaugeVerdict, ABentScaleIsFoundBentAndNamedByTheCheckThatIsProposed) {
   expect_gauge(result::json_of(fields_of(d))["gauge"], gauge);
 }
 
-TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
+TEST(GaugeVerdict, LinearSensorLeavesStiffeningAsTheCause) {
   const Diagnosis d = diagnosed(stiff_finger, gauge_of(stiff_finger));
   expect_found(d, "stiffening");
   EXPECT_NEAR(value_of(d.causes[0], "stiffening_per_mm"), 0.012, 0.002);
@@ -126,7 +126,7 @@ TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
 /// The logs cannot separate a nonlinear sensor from a stiffening finger, so the gauge check decides. In the
 /// first case, the logs come from a nonlinear sensor and the gauge readings from a linear sensor. In the
 /// second case, the logs come from a stiffening finger and the gauge readings from a nonlinear sensor.
-TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
+TEST(GaugeVerdict, RuledOutCauseIsReplacedByTheAlternative) {
   const model::Model alike = hiding("stiffening", {4 * 0.6 / (25 * 25)});
   expect_found(diagnosed(bent_scale, gauge_of(alike)), "stiffening");
   expect_found(diagnosed(alike, gauge_of(bent_scale)), "sensor_nonlinearity");
@@ -159,20 +159,20 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
 
 /// The finger stiffens, and the sensor is slightly nonlinear. The diagnosis must name the stiffening as the
 /// cause, and a warning must report the nonlinear sensor.
-TEST(GaugeVerdict, AShareOfTheBendInTheSensorIsTold) {
+TEST(GaugeVerdict, SmallSensorNonlinearityIsReportedAsAWarning) {
   const model::Model a_little = hiding("sensor_nonlinearity", {0.3, 0, 25});
   const Diagnosis d = diagnosed(stiff_finger, gauge_of(a_little));
   expect_found(d, "stiffening");
   EXPECT_TRUE(warned_of(d, "Calibrate the sensor")) << verdict_sentence(d);
 }
 
-TEST(GaugeVerdict, AnEndOfTheSensorIsToldFromAStop) {
+TEST(GaugeVerdict, GaugeNamesSensorSaturationInsteadOfAStop) {
   const Diagnosis d = diagnosed(ending_sensor, gauge_of(ending_sensor));
   expect_found(d, "sensor_saturation");
   EXPECT_NEAR(value_of(d.causes[0], "upper_mm"), 17, 0.05);
 }
 
-TEST(GaugeVerdict, AStopIsToldFromAnEndOfTheSensor) {
+TEST(GaugeVerdict, GaugeNamesAStopInsteadOfSensorSaturation) {
   const model::Model stop = hiding("contact", {17, 1e5});
   const Diagnosis before = diagnosed(stop, std::nullopt);
   ASSERT_EQ(before.verdict, Verdict::ambiguous) << verdict_sentence(before);
@@ -181,7 +181,7 @@ TEST(GaugeVerdict, AStopIsToldFromAnEndOfTheSensor) {
   EXPECT_NEAR(value_of(d.causes[0], "position_mm"), 17, 0.05);
 }
 
-TEST(GaugeVerdict, ABendOfAnotherSizeLeavesTheVerdictOpenAndSaysSo) {
+TEST(GaugeVerdict, DifferentNonlinearityLeavesTheVerdictAmbiguous) {
   const model::Model other = hiding("sensor_nonlinearity", {2.4, 0, 25});
   const Diagnosis d = diagnosed(bent_scale, gauge_of(other));
   EXPECT_EQ(d.verdict, Verdict::ambiguous);
@@ -193,7 +193,7 @@ TEST(GaugeVerdict, ABendOfAnotherSizeLeavesTheVerdictOpenAndSaysSo) {
       << verdict_sentence(d);
 }
 
-TEST(GaugeVerdict, ANoisyGaugeLeavesTheVerdictAsItWasAndIsNotProposedAgain) {
+TEST(GaugeVerdict, NoisyGaugeIsUndecidedAndNotProposedAgain) {
   const Diagnosis d = diagnosed(bent_scale, gauge_of(bent_scale, 1.5));
   EXPECT_EQ(d.verdict, Verdict::ambiguous);
   EXPECT_EQ(d.gauge->check.outcome, GaugeOutcome::undecided);
@@ -204,7 +204,7 @@ TEST(GaugeVerdict, ANoisyGaugeLeavesTheVerdictAsItWasAndIsNotProposedAgain) {
   EXPECT_NE(again.advice.front().find("change the load"), std::string::npos);
 }
 
-TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
+TEST(GaugeVerdict, NonlinearityAbsentFromTheLogsIsOnlyAWarning) {
   const model::Model finger = hiding("backlash", {1});
   const Diagnosis d = diagnosed(finger, gauge_of(bent_scale));
   EXPECT_EQ(d.verdict, Verdict::cause_found) << verdict_sentence(d);
@@ -219,7 +219,7 @@ TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
 /// If there is backlash between finger and sensor, the logs alone show that the finger stiffens and that the
 /// sensor is linear. A gauge check that shows a nonlinear sensor contradicts the logs. In this case, the
 /// diagnosis must not name stiffening without alternatives.
-TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
+TEST(GaugeVerdict, NonlinearGaugeMakesASoleStiffeningCauseAmbiguous) {
   const model::BlockSpec play{find_cause("backlash")->forms.front().type, {4}};
   const model::Model given = model::with_block(loaded("bench_twin"), play);
   const model::Model truth = model::with_block(stiff_finger, play);

@@ -103,7 +103,7 @@ class ReportTest : public ::testing::Test {
   [[nodiscard]] Page page() const { return diagnosis_page({diagnosis, logs, given, 1, {}, {}}); }
 };
 
-TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
+TEST_F(ReportTest, ErrorBudgetPartsSumToTheRefittedMeanSquare) {
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
   ASSERT_EQ(parts.size(), 3U) << "the budget must have three parts: explained by the lag, unexplained, noise";
   double sum = 0;
@@ -113,7 +113,7 @@ TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
   EXPECT_NEAR(parts[1].mm2, 0.04 - 0.01, 1e-12);
 }
 
-TEST_F(ReportTest, WhatCausesTakeTogetherOnlyIsAPartOfTheBudget) {
+TEST_F(ReportTest, JointlyExplainedErrorIsAPartOfTheBudget) {
   diagnosis.causes = {named("valve_lag", 0.02), named("transport_delay", 0.01)};
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
   ASSERT_EQ(parts.size(), 5U);
@@ -121,7 +121,7 @@ TEST_F(ReportTest, WhatCausesTakeTogetherOnlyIsAPartOfTheBudget) {
   EXPECT_NEAR(parts[2].mm2, 0.02, 1e-12);
 }
 
-TEST_F(ReportTest, CausesThatOverlapTakeNoMoreThanTogether) {
+TEST_F(ReportTest, OverlappingCausesShareTheJointReduction) {
   diagnosis.causes = {named("valve_lag", 0.05), named("transport_delay", 0.05)};
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
   ASSERT_EQ(parts.size(), 4U);
@@ -129,7 +129,7 @@ TEST_F(ReportTest, CausesThatOverlapTakeNoMoreThanTogether) {
   EXPECT_NEAR(parts[1].mm2, 0.025, 1e-12);
 }
 
-TEST_F(ReportTest, NoLineOfADrawingGoesThroughItsWords) {
+TEST_F(ReportTest, NoLineCrossesAWordInAFigure) {
   Canvas canvas;
   canvas.words({10, 50}, Anchor::start, "crossed");
   canvas.words({10, 80}, Anchor::start, "not");
@@ -143,7 +143,7 @@ TEST_F(ReportTest, NoLineOfADrawingGoesThroughItsWords) {
             std::vector<std::string>{});
 }
 
-TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachAlternative) {
+TEST_F(ReportTest, ForestPlotHasARowPerCauseAndAlternative) {
   const Figure forest = forest_figure(diagnosis);
   ASSERT_TRUE(forest.drawing);
   ASSERT_EQ(forest.drawing->rows.size(), 2U);
@@ -154,7 +154,7 @@ TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachAlternative) {
   EXPECT_NE(forest.drawing->markup.find("0.97"), std::string::npos);
 }
 
-TEST_F(ReportTest, APartThatMayBeNothingIsNotInTheForest) {
+TEST_F(ReportTest, InsignificantPartialCauseIsNotInTheForestPlot) {
   diagnosis.causes.clear();
   diagnosis.partial = {named("valve_lag", 0.02), named("transport_delay", 0.01)};
   diagnosis.partial.back().heldout_gain_percent = {7, 10, -8, 36};
@@ -164,7 +164,7 @@ TEST_F(ReportTest, APartThatMayBeNothingIsNotInTheForest) {
   EXPECT_EQ(page().to_html().find("error reduction by cause"), std::string::npos);
 }
 
-TEST_F(ReportTest, TheChainMarksWhatTheGivenModelLacks) {
+TEST_F(ReportTest, BlockDiagramMarksAddedBlocks) {
   const Figure chain = chain_figure(diagnosis.extended_model, given);
   EXPECT_EQ(count(chain.drawing->markup, ", added<"), 2U) << "added blocks: delay and lag";
   EXPECT_NE(chain.drawing->markup.find("time constant = 0.044 s"), std::string::npos);
@@ -173,7 +173,7 @@ TEST_F(ReportTest, TheChainMarksWhatTheGivenModelLacks) {
   EXPECT_EQ(count(chain_figure(given, given).drawing->markup, ", added<"), 0U);
 }
 
-TEST_F(ReportTest, OpensWithTheVerdictAndEndsWithWhatOnlyThoseReadWhoCheck) {
+TEST_F(ReportTest, OpensWithTheVerdictAndEndsWithTheAppendix) {
   const std::string html = page().to_html();
   std::size_t at = 0;
   for (const char* part :
@@ -200,13 +200,13 @@ TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
 }
 
 // Each model in the report must have its own name, so that readers can assign each result to its model.
-TEST_F(ReportTest, TheModelsHaveNamesOfTheirOwn) {
+TEST_F(ReportTest, EachModelHasADistinctName) {
   const std::string html = page().to_html();
   for (const char* name : {">given model<", ">recalibrated model<", ">extended model<", "zhang2025_extended"})
     EXPECT_NE(html.find(name), std::string::npos) << name;
 }
 
-TEST_F(ReportTest, WhatIsNotClearIsNotDrawn) {
+TEST_F(ReportTest, InsignificantConditionsAreNotDrawn) {
   diagnosis.evidence.emplace();
   ConditionEvidence rate;
   rate.condition.id = "rate";
@@ -219,7 +219,7 @@ TEST_F(ReportTest, WhatIsNotClearIsNotDrawn) {
   EXPECT_NE(page().to_html().find("rate of the pressure in kilopascals per second"), std::string::npos);
 }
 
-TEST_F(ReportTest, LoopsAreDrawnOfALogThatHasSome) {
+TEST_F(ReportTest, LogWithoutHysteresisLoopsGetsNoLoopFigure) {
   EXPECT_TRUE(has_loops(diagnosis.records.front()));
   for (Record& record : diagnosis.records) {
     for (std::size_t i = 0; i < record.size(); ++i) record.drive_kpa[i] = i < record.size() / 2 ? 0 : 40;
@@ -228,7 +228,7 @@ TEST_F(ReportTest, LoopsAreDrawnOfALogThatHasSome) {
   EXPECT_EQ(page().to_html().find("\"loops log_"), std::string::npos);
 }
 
-TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
+TEST_F(ReportTest, ClosedLoopIsDrawnOnlyWithAModelBasedController) {
   ClosedLoopCurves curves{
       "13 ± 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"the extended model has no usable feedforward"}};
   curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}};
@@ -242,7 +242,7 @@ TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
             std::string::npos);
 }
 
-TEST_F(ReportTest, OfACauseWithManyParametersThoseThatWereMeasuredAreShown) {
+TEST_F(ReportTest, LongParameterTablesShowOnlyMeasuredParameters) {
   NamedCause& many = diagnosis.causes.front();
   many.parameters.clear();
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g"})

@@ -28,7 +28,7 @@ ValveFindings dead_band_found() {
   return found;
 }
 
-TEST(ReportValve, NamesEveryNumberWithItsIntervalAndWhatIsLeft) {
+TEST(ReportValve, StatesEachParameterWithIntervalAndResidual) {
   Page page("title", "sentence", Tone::bad);
   add_valve_section(page, dead_band_found());
   const std::string html = page.to_html();
@@ -38,7 +38,7 @@ TEST(ReportValve, NamesEveryNumberWithItsIntervalAndWhatIsLeft) {
   }
 }
 
-TEST(ReportValve, IsNoTableWhereNothingIsLacking) {
+TEST(ReportValve, HasNoParameterTableWithoutACause) {
   Page page("title", "sentence", Tone::good);
   ValveFindings nothing = dead_band_found();
   nothing.named.clear();
@@ -76,7 +76,7 @@ TEST(DiagnosisJson, IsWrittenIfThePathOfALogIsNotUtf8) {
   EXPECT_NE(result::json_text(fields_of(d)).find("\"run\": \"sp2\xef\xbf\xbd\""), std::string::npos);
 }
 
-TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
+TEST(DiagnosisJson, ValveCauseFromMeasuredPressureIsListedInCauses) {
   Diagnosis d;
   d.verdict = Verdict::adequate;
   EXPECT_EQ(result::json_of(fields_of(d))["verdict"], "adequate");
@@ -96,7 +96,7 @@ TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
   EXPECT_EQ(result::json_of(fields_of(d))["verdict"], "partly_explained");
 }
 
-TEST(DiagnosisJson, ALeakThatMayBeAScaleIsAmbiguousWithTheScaleForItsAlternative) {
+TEST(DiagnosisJson, ValveCauseWithAPressureScaleAlternativeIsAmbiguous) {
   Diagnosis d;
   d.verdict = Verdict::recalibrate;
   d.in_valve = dead_band_found();

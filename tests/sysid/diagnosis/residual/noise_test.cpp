@@ -22,7 +22,7 @@ Record record_read_every(int every) {
   return record;
 }
 
-TEST(MeasuredNoise, IsThatOfTheReadingsHoweverManySamplesAreBetweenThem) {
+TEST(MeasuredNoise, IsIndependentOfTheSpacingOfReadings) {
   for (const int every : {1, 2, 5, 20})
     EXPECT_NEAR(measured_noise_mm({record_read_every(every)}), 0.02, 0.004) << every;
 }

@@ -40,7 +40,7 @@ ByRecord plus(ByRecord left, double (*structure)(double time_s)) {
   return left;
 }
 
-TEST(Outliers, AreFoundInTheMidstOfAMotion) {
+TEST(Outliers, AreFoundDuringMotion) {
   const std::vector<Record> campaign = known_campaign(2);
   ByRecord left = noise_for(campaign, noise_mm, 0, 5);
   std::size_t put = 0;
@@ -64,7 +64,7 @@ TEST(Outliers, AreFoundInTheMidstOfAMotion) {
   EXPECT_EQ(records[0].readings + records[1].readings + put, evidence.readings);
 }
 
-TEST(Outliers, NoiseHasNone) {
+TEST(Outliers, NoiseContainsNoOutliers) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
     EXPECT_EQ(found_in(noise_for(known_campaign(2), noise_mm, 0, seed)).count, 0u) << "seed " << seed;
 }
@@ -72,7 +72,7 @@ TEST(Outliers, NoiseHasNone) {
 // A systematic residual must not count as outliers, even if it is large. Examples are oscillations of any
 // frequency, impacts, and a sawtooth. By chance, up to one in a thousand corners of the sawtooth may look
 // isolated.
-TEST(Outliers, StructureIsNone) {
+TEST(Outliers, SystematicResidualsAreNoOutliers) {
   const ByRecord noise = noise_for(known_campaign(2), noise_mm, 0, 7);
   const std::vector<std::pair<const char*, double (*)(double)>> structures{
       {"slow ringing", [](double t) { return 2 * std::sin(2 * std::numbers::pi * 1.3 * t); }},
@@ -95,7 +95,7 @@ TEST(Outliers, StructureIsNone) {
 
 // The command jumps, and the model follows one sample too late. The large residual of this one sample must
 // not count as an outlier.
-TEST(Outliers, LatenessIsNone) {
+TEST(Outliers, LateModelResponseIsNoOutlier) {
   std::vector<Record> records = known_campaign(1);
   ByRecord left = noise_for(records, noise_mm, 0, 9);
   for (std::size_t i = 0; i < records[0].size(); ++i)
@@ -141,23 +141,23 @@ void expect_taken_out(Log log, const std::map<std::size_t, double>& wrong, const
   }
 }
 
-TEST(WrongReadings, ACodeIsTakenOutWhereverItStands) {
+TEST(WrongReadings, ErrorCodesAreRemovedAtAnyPosition) {
   expect_taken_out(moving(), {{0, 9999}, {1, 9999}, {700, 9999}, {1999, 9999}},
                    "4 of 2000 readings are outliers");
   expect_taken_out(moving(), {{500, -999}, {501, -999}, {502, -999}, {503, -999}}, "-999 mm at 10 s");
 }
 
-TEST(WrongReadings, IsolatedOnesAreTakenOutInASlowSensorToo) {
+TEST(WrongReadings, IsolatedReadingsAreRemovedForSlowSensorsToo) {
   expect_taken_out(moving(), {{300, 31.5}, {907, -22.5}, {1500, 44.5}}, "3 of 2000 readings are outliers");
   expect_taken_out(moving(20), {{300, 81.5}, {900, -22.5}, {1500, 44.5}}, "3 of 100 readings are outliers");
 }
 
-TEST(WrongReadings, TheFirstAndTheLastReadingMayBeOne) {
+TEST(WrongReadings, FirstOrLastReadingCanBeRemoved) {
   expect_taken_out(moving(), {{0, 431.7}}, "1 of 2000 readings is an outlier");
   expect_taken_out(moving(), {{1999, -388.1}}, "-388.1 mm");
 }
 
-TEST(WrongReadings, AMotionHasNone) {
+TEST(WrongReadings, NoReadingIsRemovedFromACorrectMotion) {
   Log step = moving();
   for (std::size_t i = 0; i < step.size(); ++i) {
     step.pressure_command_kpa[i] = i == 0 ? 0 : 40;

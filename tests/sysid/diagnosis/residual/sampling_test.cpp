@@ -40,7 +40,7 @@ std::size_t readings_in(const std::vector<Record>& records) {
   return count;
 }
 
-TEST(HideRepeated, LeavesReadingsThatAreAllNew) {
+TEST(HideRepeated, KeepsReadingsWithoutRepetition) {
   const std::vector<Record> before = noisy_campaign();
   std::vector<Record> after = before;
   const SamplingEvidence evidence = hide_repeated(after);
@@ -66,7 +66,7 @@ TEST(HideRepeated, KeepsTheFirstOfEachSlowReading) {
   EXPECT_EQ(records[0].readings, kept);
 }
 
-TEST(HideRepeated, TakesTheClockOfTheSensorAsItComes) {
+TEST(HideRepeated, EstimatesTheIntervalOfAnUnsynchronisedSensor) {
   // The sensor and the log have independent clocks. The sensor gives a new reading every 11.7 samples of the
   // log on average, that is, after 11 to 13 samples.
   std::vector<Record> records = read_at(noisy_campaign(), [](std::size_t i) {

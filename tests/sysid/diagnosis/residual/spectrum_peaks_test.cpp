@@ -39,7 +39,7 @@ Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
   return c;
 }
 
-TEST(SpectrumPeaks, FindsAWeakOscillationToAThirdOfWhatTheCampaignResolves) {
+TEST(SpectrumPeaks, FindsAWeakOscillationWithinHalfTheResolution) {
   for (const double frequency_hz : {0.73, 3.21, 17.7}) {
     const Campaign c = campaign(frequency_hz, 0.01, 0);
     const auto peaks = spectrum_peaks(c.records, c.residual_mm, 3);
@@ -48,7 +48,7 @@ TEST(SpectrumPeaks, FindsAWeakOscillationToAThirdOfWhatTheCampaignResolves) {
   }
 }
 
-TEST(SpectrumPeaks, TheLineIsAStartNearTheLeastSquares) {
+TEST(SpectrumPeaks, StrongestLineRemoves65PercentOfTheMeanSquare) {
   // If the spectral line is subtracted from the residual, at least 65 % of the mean square must disappear.
   Campaign c = campaign(3.21, 0.2, 0);
   const Line line = spectrum_peaks(c.records, c.residual_mm, 1).front();
@@ -65,13 +65,13 @@ TEST(SpectrumPeaks, TheLineIsAStartNearTheLeastSquares) {
   EXPECT_LT(after, 0.35 * before);
 }
 
-TEST(SpectrumPeaks, IrregularSamplesAndMissingReadingsAreNoObstacle) {
+TEST(SpectrumPeaks, FrequencyIsFoundDespiteIrregularSamplesAndGaps) {
   Campaign c = campaign(2.4, 0.02, 0.004);
   for (std::size_t i = 1000; i < 1200; ++i) c.residual_mm[0][i] = std::nan("");
   EXPECT_NEAR(spectrum_peaks(c.records, c.residual_mm, 1).front().frequency_hz, 2.4, 1.0 / 120 / 2);
 }
 
-TEST(SpectrumPeaks, AWanderingZeroIsNoOscillation) {
+TEST(SpectrumPeaks, SlowZeroDriftIsNoOscillation) {
   const Campaign c = campaign(0.05, 2.0, 0);
   for (const Line& peak : spectrum_peaks(c.records, c.residual_mm, 3))
     EXPECT_GE(peak.frequency_hz, 0.2 - 1e-9);

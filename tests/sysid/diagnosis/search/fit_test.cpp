@@ -14,7 +14,7 @@ namespace {
 
 using model::SignalName;
 
-TEST(WithoutEffects, LeavesWhatTheFingerWouldHaveReadWithoutThem) {
+TEST(WithoutEffects, ReturnsTheReadingsOfTheFingerWithoutTheCauses) {
   const model::Model bare = loaded("bench_twin");
   model::Model with =
       model::with_block(bare, model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.002}}));

@@ -12,7 +12,7 @@
 namespace softgrip::sysid::holdout_test {
 namespace {
 
-TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
+TEST(HeldOutLosses, AreLimitedToTheSquareOfTheSpan) {
   std::vector<Record> records =
       make_records({simulated(loaded("bench_twin"), model::SignalName::tp1, 25, 0.05, 3)}, {});
   const SearchData data = make_search_data(records, loaded("zhang2025"));
@@ -29,7 +29,7 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
 
 /// If a complete log is left out, a different zero offset or a start in motion must not increase the error of
 /// this log.
-TEST(LeftOutLosses, AreThoseOfAStartThatTheFirstReadingsTell) {
+TEST(LeftOutLosses, IgnoreOffsetAndStartInMotionOfALeftOutLog) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs{simulated(twin, model::SignalName::tp1, 25, 0.05, 3),
                         simulated(twin, model::SignalName::sp2, 25, 0.05, 4)};
@@ -53,7 +53,7 @@ StructureFit fitted(const std::vector<Record>& records) {
   return fit_structure(records, {}, {model, rest_starts(model, records)});
 }
 
-TEST(LinearHeldOutLosses, AreThoseOfRefitsWhereEveryPartShowsAllNumbers) {
+TEST(LinearHeldOutLosses, MatchTheLossesOfExactRefits) {
   const std::vector<Record> records =
       make_records({simulated(loaded("bench_twin"), model::SignalName::tp1, 25, noise_mm, 11)}, {});
   const StructureFit fit = fitted(records);
@@ -64,7 +64,7 @@ TEST(LinearHeldOutLosses, AreThoseOfRefitsWhereEveryPartShowsAllNumbers) {
 
 /// The log contains one jump and long holds. If the block with the jump is held out, the remaining readings
 /// contain almost no information about the delay of the response.
-TEST(LinearHeldOutLosses, StayOfTheReadingsSizeWhereOneStretchAloneShowsANumber) {
+TEST(LinearHeldOutLosses, StayBelowThreeTimesTheNoiseForASingleJump) {
   const model::Model model = loaded("bench_twin");
   Log log;
   log.name = "jump";

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-TEST(LinearFit, FitsTheCauseAndLeavesTheBaseStructureAsItIs) {
+TEST(LinearFit, FitsTheCauseAndKeepsTheBaseStructure) {
   const model::Model base = loaded("zhang2025");
   const Cause cause = *find_cause("backlash");
   const auto with_gap = [&](double gap_mm) {

@@ -46,7 +46,7 @@ model::Model softening() {
 
 /// Compares the approximate held-out losses of the linearised model with exact losses. For the exact losses,
 /// the model is refitted without each held-out block.
-TEST(LinearHoldout, SaysWhatRefittingSays) {
+TEST(LinearHoldout, MatchesTheLossesOfRefittedModels) {
   const Campaign c = campaign_of(softening());
   const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
   const BlockLosses linear = linear_held_out_losses(c.data.records, c.division, c.base);
@@ -56,7 +56,7 @@ TEST(LinearHoldout, SaysWhatRefittingSays) {
 }
 
 /// Compares the linear search with the full search, which varies all parameters of the model structure.
-TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
+TEST(LinearSelection, FindsTheSameCauseAsTheFullSearch) {
   const std::vector<model::BlockSpec> effects{
       model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
       model::block_of<model::SensorLag>({{"time_constant_s", 0.15}}),
@@ -78,14 +78,14 @@ TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
   }
 }
 
-TEST(LinearSelection, FindsNothingWhereTheBaseHolds) {
+TEST(LinearSelection, FindsNoCauseForACorrectModelStructure) {
   const Campaign c = campaign_of(finger());
   const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
   EXPECT_TRUE(found.chosen.empty());
   EXPECT_EQ(found.extended.mean_square_mm2, c.base.mean_square_mm2);
 }
 
-TEST(LinearSelection, FindsBothOfTwo) {
+TEST(LinearSelection, FindsBothOfTwoCauses) {
   model::Model truth = model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.4}}));
   truth = model::with_block(truth, model::block_of<model::SensorLag>({{"time_constant_s", 0.15}}));
   const Campaign c = campaign_of(truth);
@@ -97,7 +97,7 @@ TEST(LinearSelection, FindsBothOfTwo) {
 
 /// The hysteresis loop differs slightly from every loop that the model structure can describe. If this
 /// difference is smaller than the noise, no cause may be named for it.
-TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
+TEST(LinearSelection, LoopShapeErrorBelowTheNoiseIsNoCause) {
   for (const bool clear : {false, true}) {
     const Campaign c = campaign_of(model::with_block(
         finger(), model::block_of<model::AsymmetricBoucWen>({{"beta_share", clear ? 0.08 : 0.02}})));
@@ -110,7 +110,7 @@ TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
   }
 }
 
-TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
+TEST(Weigh, ErrorReductionIsTheLossWithoutMinusWithTheCause) {
   const Campaign c = campaign_of(finger());
   const Cause cause = *find_cause("stress_softening");
   const BlockLosses with{1, 1, 1, 1}, without{2, 2, 2, 2};
@@ -125,7 +125,7 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
 /// If the input of the model is the measured pressure, the residual contains no error of the valve. A cause
 /// may then be named even if its error reduction is small, provided that the error decreases in most blocks.
 /// If the input is the command, the limits are stricter, and the same cause is rejected.
-TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
+TEST(LinearSelection, MeasuredPressureAllowsASmallerErrorReduction) {
   const Campaign c =
       campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));
   SelectionOptions measured;

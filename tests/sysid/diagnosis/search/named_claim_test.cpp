@@ -56,7 +56,7 @@ double aged(double y_mm, double t_s) {
   return y_mm * (1 + 0.1 * t_s / 120);
 }
 
-TEST(NamedClaim, OfWhatIsThereMeetsAllConditions) {
+TEST(NamedClaim, TrueCauseMeetsAllConditions) {
   Case ageing("ageing", aged);
   ASSERT_FALSE(ageing.with.causes.empty());
   EXPECT_EQ(ageing.veto(), Veto::none);
@@ -69,13 +69,13 @@ TEST(NamedClaim, FailsWhereLeftOutRunsAreNotPredictedBetter) {
   EXPECT_EQ(ageing.veto(), Veto::not_predictive);
 }
 
-TEST(NamedClaim, FailsWhereItIsNotClearOfZero) {
+TEST(NamedClaim, FailsIfTheSizeIntervalContainsZero) {
   Case ageing("ageing", [](double y_mm, double) { return y_mm; });
   ASSERT_FALSE(ageing.with.causes.empty());
   EXPECT_EQ(ageing.veto(), Veto::size_uncertain);
 }
 
-TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
+TEST(NamedClaim, FailsIfTheRequiredConditionIsNeverMet) {
   Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
   ASSERT_FALSE(drift.with.causes.empty());
   EXPECT_EQ(drift.veto(), Veto::none);
@@ -88,7 +88,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
   EXPECT_EQ(drift.veto(), Veto::not_tested);
 }
 
-TEST(NamedClaim, FailsWhereItsEffectIsAbsent) {
+TEST(NamedClaim, FailsIfTheEffectIsAbsentWhereRequired) {
   Case ageing("ageing", aged);
   // The residuals are changed so that the cause reduces the residual only at small displacements.
   for (std::size_t r = 0; r < ageing.records.size(); ++r) {

@@ -44,7 +44,7 @@ NullOptions options(std::uint64_t seed) {
   return options;
 }
 
-TEST(NullCalibration, NoCampaignReachesTheGainOfARealCause) {
+TEST(NullCalibration, NoNullReachesTheErrorReductionOfARealCause) {
   const Searched s = searched(1.5);
   Selection selection =
       select_causes(s.data, s.base, measured_noise_mm(s.data.records), s.division, SelectionOptions{});
@@ -57,17 +57,17 @@ TEST(NullCalibration, NoCampaignReachesTheGainOfARealCause) {
   EXPECT_DOUBLE_EQ(nulls.p_value, 1.0 / (few + 1));
 }
 
-TEST(NullCalibration, AGainOfNothingIsReachedByAll) {
+TEST(NullCalibration, ZeroErrorReductionHasAPValueOfOne) {
   const Searched s = searched(0);
   EXPECT_DOUBLE_EQ(calibrate_on_nulls(s.data, s.base, 0, s.division, options(5)).p_value, 1);
 }
 
-TEST(NullCalibration, WhiteNoiseIsNamedNothing) {
+TEST(NullCalibration, NoCauseIsNamedForWhiteNoise) {
   const Searched s = searched(0);
   EXPECT_EQ(calibrate_on_nulls(s.data, s.base, 1, s.division, options(11)).named, 0U);
 }
 
-TEST(NullCalibration, OneSeedGivesOneAnswerWhateverTheThreads) {
+TEST(NullCalibration, ResultIsIndependentOfTheThreadCount) {
   Searched s = searched(1.5);
   NullOptions two = options(2);
   two.campaigns = 2;

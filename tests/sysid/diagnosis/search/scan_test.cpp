@@ -38,7 +38,7 @@ class Scanned : public ::testing::Test {
   std::vector<Record> records_;
 };
 
-TEST_F(Scanned, TheTrueBlockLeavesTheNoise) {
+TEST_F(Scanned, TrueBlockReducesTheErrorToTheNoise) {
   const model::Model base = loaded("zhang2025");
   const model::BlockSpec hidden = block("backlash", {1.2});
   const Scan scan = scan_of(model::with_block(base, hidden), base);
@@ -50,7 +50,7 @@ TEST_F(Scanned, TheTrueBlockLeavesTheNoise) {
   EXPECT_GT(std::sqrt(scan.mean_square_with(block("backlash", {0.05}))), 3 * noise_mm);
 }
 
-TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
+TEST_F(Scanned, SmallParameterErrorIsLargelyCompensated) {
   const model::Model base = loaded("zhang2025");
   const Scan drifting = scan_of(model::with_block(base, block("sensor_saturation", {-10000, 14})), base);
   ASSERT_TRUE(drifting.usable());
@@ -58,7 +58,7 @@ TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
             0.3 * drifting.mean_square_with(block("sensor_saturation", {-10000, 10000})));
 }
 
-TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
+TEST_F(Scanned, PredictedErrorIsIndependentOfABaseParameter) {
   // A refit of the model structure compensates for a change of alpha. The predicted error must therefore not
   // depend on alpha.
   const model::Model base = loaded("zhang2025");
@@ -70,13 +70,13 @@ TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
   EXPECT_NEAR(std::sqrt(beside.mean_square_with(block("backlash", {0.0}))), std::sqrt(there), 1e-4);
 }
 
-TEST_F(Scanned, BlocksThatAreNotValidAreNoStarts) {
+TEST_F(Scanned, InvalidBlockHasAnInfiniteError) {
   const model::Model base = loaded("zhang2025");
   const Scan scan = scan_of(base, base);
   EXPECT_TRUE(std::isinf(scan.mean_square_with(block("backlash", {-1}))));
 }
 
-TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
+TEST(BestStarts, DelayNearestToTheTrueDelayComesFirst) {
   const model::Model given = loaded("zhang2025");
   const model::Model truth = model::with_block(given, block("transport_delay", {0.11}));
   const SearchData data = make_search_data(records_of(truth), given);
@@ -90,7 +90,7 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
 
 // Of the forms of this cause, one has more parameters and therefore the smallest predicted error at every
 // start point. Nevertheless, the result must contain start points of every form and of every scan.
-TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
+TEST(BestStarts, ContainEveryFormOfACauseAndEveryScan) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);
   model::Model other = given;

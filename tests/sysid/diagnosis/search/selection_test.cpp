@@ -56,7 +56,7 @@ double bent(double y_mm) {
   return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
 }
 
-TEST(Selection, WhatTheFormOfACauseLeavesGetsNoNameOfItsOwn) {
+TEST(Selection, InexactFormOfACauseAddsNoSecondCause) {
   const Selection selection = select([](double y_mm, double) { return bent(y_mm); });
   EXPECT_TRUE(selection.left.present)
       << "the block form of the cause fits exactly, so this test is not meaningful";
@@ -64,7 +64,7 @@ TEST(Selection, WhatTheFormOfACauseLeavesGetsNoNameOfItsOwn) {
   EXPECT_EQ(names(selection), std::vector<std::string>{"sensor_nonlinearity"});
 }
 
-TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
+TEST(Selection, SmallEffectOfADifferentTypeIsNamed) {
   const Selection selection = select([](double y_mm, double t_s) {
     return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
   });
@@ -77,7 +77,7 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
 
 /// The disturbance has a different amplitude in each run. A fit to all runs leads to an amplitude that does
 /// not occur in any run, so it does not predict a left-out run.
-TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
+TEST(Selection, DisturbanceWithVaryingAmplitudeIsNotNamed) {
   SelectionOptions one;
   one.most_causes = 1;
   const Selection selection = select(

@@ -17,7 +17,7 @@ model::Model plays(std::vector<double> values) {
   return model::with_block(m, {model::block_type<model::PrandtlIshlinskii>(), std::move(values)});
 }
 
-TEST(Slack, TheElasticShareIsThatOfTheOperatorWithoutAThreshold) {
+TEST(Slack, ElasticShareIsTheShareOfTheZeroThresholdOperator) {
   EXPECT_DOUBLE_EQ(elastic_share(plays({0, 0, 0, 0, 0, 0.1, 4, 0.3})), 0.25);
   EXPECT_DOUBLE_EQ(elastic_share(plays({0, 0, 0, 0, 2, 0.1, 4, 0.3})), 0);
   EXPECT_DOUBLE_EQ(elastic_share(model::Model{}), 1);
@@ -25,7 +25,7 @@ TEST(Slack, TheElasticShareIsThatOfTheOperatorWithoutAThreshold) {
 
 /// A play operator with a threshold has the same output for every input as a spring in series with a
 /// backlash.
-TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
+TEST(Slack, BacklashReproducesAPlayOperatorExactly) {
   const model::Model slack = plays({0, 0, 0, 0, 3, 0.2});
   const auto with_backlash = with_slack_as_backlash(slack);
   ASSERT_TRUE(with_backlash);
@@ -39,7 +39,7 @@ TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
   }
 }
 
-TEST(Slack, WithoutAnOperatorThatStandsStillThereIsNone) {
+TEST(Slack, NoConversionWithoutThresholdOrWithBacklash) {
   EXPECT_FALSE(with_slack_as_backlash(plays({0, 0, 0, 0, 0, 0.2})));
   EXPECT_FALSE(with_slack_as_backlash(model::Model{}));
   EXPECT_FALSE(with_slack_as_backlash(

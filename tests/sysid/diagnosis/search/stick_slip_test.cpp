@@ -60,7 +60,7 @@ double sticking(double band_kpa, double pressure, double command) {
   return std::abs(command - pressure) > band_kpa ? command : pressure;
 }
 
-TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
+TEST(StickSlip, FindsTheBandOfAStickSlipValve) {
   for (const double band_kpa : {1.3, 3.1}) {
     SCOPED_TRACE(band_kpa);
     const auto records = answered(
@@ -79,7 +79,7 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
 
 // The delay is 17.5 samples long, so a jump of the valve is visible in the readings only after 17 or 18
 // samples.
-TEST(StickSlip, IsFoundBehindALongDelay) {
+TEST(StickSlip, StickBandIsFoundDespiteALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
   for (Record& r : early) {  // delays the command by `delay_s`; the valve in the simulation follows the
@@ -107,7 +107,7 @@ TEST(StickSlip, IsFoundBehindALongDelay) {
   EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.5 * noise_mm);
 }
 
-TEST(StickSlip, FollowsAPathAsFarAsItIsWorth) {
+TEST(StickSlip, PathSearchStopsAboveTheErrorLimit) {
   const auto records = answered(
       known_campaign(2), [](double p, double u, double) { return sticking(3.1, p, u); }, 11);
   const StructureFit model = behind(records);
@@ -123,7 +123,7 @@ TEST(StickSlip, FollowsAPathAsFarAsItIsWorth) {
   EXPECT_TRUE(given_up.held_kpa.empty());
 }
 
-TEST(StickSlip, SeesThatJumpsComeOverAnyDistance) {
+TEST(StickSlip, RandomJumpDistancesAreNoStickSlip) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(0.5, 4.0);
   double band_kpa = any(random);
@@ -150,7 +150,7 @@ std::vector<double> partly_short(std::uint64_t seed) {
   return distances_kpa;
 }
 
-TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
+TEST(StickSlip, ShortJumpsDoNotBiasTheStickBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
@@ -159,7 +159,7 @@ TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 
-TEST(StickSlip, TheIntervalOfTheBandHoldsItAsOftenAsItSays) {
+TEST(StickSlip, BandIntervalCoversTheTrueBandIn95Percent) {
   int held = 0;
   constexpr int seeds = 1000;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -174,7 +174,7 @@ TEST(StickSlip, TheIntervalOfTheBandHoldsItAsOftenAsItSays) {
   EXPECT_NEAR(held, 0.95 * seeds, 0.02 * seeds);
 }
 
-TEST(StickSlip, TakesNeitherAPlayNorALagNorAFaithfulValveForOne) {
+TEST(StickSlip, PlayLagAndIdealValveAreNoStickSlip) {
   const auto play = [](double p, double u, double) { return std::clamp(p, u - 1.0, u + 1.0); };
   const auto lag = [](double p, double u, double dt) { return p + (u - p) * dt / 0.15; };
   const auto faithful = [](double, double u, double) { return u; };

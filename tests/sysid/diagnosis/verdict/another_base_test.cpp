@@ -18,14 +18,14 @@ Selection left_of(double left_mm, double before_mm) {
   return selection;
 }
 
-TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
+TEST(MayLackABase, IsFalseIfTheUnexplainedErrorIsSmall) {
   Selection nothing = left_of(2 * noise_mm, 3 * noise_mm);
   nothing.left.present = false;
   EXPECT_FALSE(may_lack_a_base(nothing, noise_mm));
   EXPECT_FALSE(may_lack_a_base(left_of(0.9 * worth_a_look * noise_mm, 0.01 * noise_mm), noise_mm));
 }
 
-TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
+TEST(MayLackABase, DependsOnTheRemainingShareOfTheError) {
   // The cause leaves 0.9 % of the mean square error. In simulated test cases, the cause "softening" leaves a
   // share of this size although it is the true cause.
   EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
@@ -34,7 +34,7 @@ TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
   EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
 }
 
-TEST(MayLackABase, WhereMoreThanTheNoiseIsLeftHoweverMuchThereWas) {
+TEST(MayLackABase, IsTrueIfTheRemainingErrorExceedsTheNoise) {
   EXPECT_TRUE(may_lack_a_base(left_of(1.1 * noise_mm, 1000 * noise_mm), noise_mm));
 }
 
@@ -44,7 +44,7 @@ NamedCause named(std::string_view id) {
   return one;
 }
 
-TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop) {
+TEST(AnotherShape, SufficesOnlyWithSimilarLossAndWithoutAsymmetry) {
   const BlockLosses selected(10, 0.04);
   BaseFindings base;
   base.named = {named("hysteresis_shape"), named("slow_creep")};
@@ -63,7 +63,7 @@ TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop)
       << "the hysteresis loops of the alternative structure must equal those of the given structure";
 }
 
-TEST(AnotherShape, IsAnAlternativeOfTheAsymmetricLoopAloneAndOnce) {
+TEST(AnotherShape, IsAddedOnceAndOnlyToTheAsymmetricLoop) {
   std::vector<NamedCause> names{named("asymmetric_hysteresis"), named("contact")};
   add_another_shape(names);
   add_another_shape(names);
@@ -72,7 +72,7 @@ TEST(AnotherShape, IsAnAlternativeOfTheAsymmetricLoopAloneAndOnce) {
   EXPECT_TRUE(names[1].alternatives.empty());
 }
 
-TEST(AnotherBase, ThatIsNotFoundSettlesNothing) {
+TEST(AnotherBase, AbsentAlternativeStructureResolvesNoSelection) {
   const SearchData data;
   AnotherBase another(data, {});
   EXPECT_FALSE(another.is_found());

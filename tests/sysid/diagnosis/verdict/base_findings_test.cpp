@@ -67,7 +67,7 @@ bool names(const BaseFindings& base, std::string_view id) {
                      [&](const NamedCause& n) { return n.cause.id == id; });
 }
 
-TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
+TEST(BaseFindings, DifferentLoopShapeIsNamed) {
   const Found found = found_in(plays());
   ASSERT_TRUE(found.base);
   const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
@@ -81,7 +81,7 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
 
 /// A set of play operators without an elastic operator does not move at first after a reversal. This looks
 /// like a backlash. With an elastic operator, the set moves at once.
-TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
+TEST(BaseIngredients, BacklashIsAnAlternativeWithoutElasticOperator) {
   const auto has_backlash = [](const Found& found) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
                                     [](const NamedCause& n) { return n.cause.id == "hysteresis_shape"; });
@@ -100,7 +100,7 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
 
 /// On the given structure, the error is too large to name a cause. In this case, a slightly smaller loss is
 /// sufficient to prefer the alternative structure.
-TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
+TEST(BaseFindings, SmallerLossSufficesIfTheGivenStructureNamesNoCause) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
   Selection plain = found.plain;
@@ -116,7 +116,7 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
 /// On the given structure, two causes are necessary to explain the data. On the alternative structure, one of
 /// them is sufficient, because its hysteresis loops explain the remaining error. The loss of the alternative
 /// structure may then be slightly larger.
-TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
+TEST(BaseFindings, AlternativeWithFewerCausesMayHaveALargerLoss) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
   Selection plain = found.plain;
@@ -139,7 +139,7 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
 
 /// For slow commands, a delay and a lag have nearly the same effect, so each of them can compensate for the
 /// other. If the model contains neither a delay nor a lag, it responds too early.
-TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
+TEST(BaseFindings, LatencyIsNamedWithDelayAndLagAsAlternatives) {
   const model::Model late =
       model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
   const Found found = found_in(late);
@@ -160,7 +160,7 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
 }
 
 /// A cause must be found even if the alternative structure is selected.
-TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
+TEST(BaseFindings, CauseOnTheAlternativeStructureIsNamed) {
   model::Model finger = plays();
   finger =
       model::with_block(std::move(finger), model::block_of<model::PressureSaturation>({{"limit_kpa", 38}}));
@@ -172,17 +172,17 @@ TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   EXPECT_LT(rmse_mm(found.base->losses), 0.5 * before_mm);
 }
 
-TEST(BaseIngredients, TheLatencyIsTakenAwayAsAWhole) {
+TEST(BaseIngredients, DelayLagAndLatencyAreListedOnceEach) {
   const std::vector<Ingredient> away = named_ingredients();
   for (const Ingredient one : {Ingredient::delay, Ingredient::lag, Ingredient::latency})
     EXPECT_EQ(std::count(away.begin(), away.end(), one), 1);
 }
 
-TEST(BaseFindings, WhereTheGivenBaseHoldsThereIsNone) {
+TEST(BaseFindings, CorrectGivenStructureHasNoAlternative) {
   EXPECT_FALSE(found_in(published()).base);
 }
 
-TEST(WinningShare, CountsTheDrawsThatLoseLess) {
+TEST(WinningShare, IsTheShareOfDrawsWithALowerLoss) {
   EXPECT_EQ(winning_share({1, 1, 1}, {2, 2, 2}, 1), 1);
   EXPECT_EQ(winning_share({2, 2, 2}, {1, 1, 1}, 1), 0);
   EXPECT_EQ(winning_share({1, 2, 3}, {1, 2, 3}, 1), 0.5);

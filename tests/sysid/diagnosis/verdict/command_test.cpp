@@ -58,7 +58,7 @@ class DiagnoseCommand : public CommandInFolder {
   }
 };
 
-TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionInvertible) {
+TEST_F(DiagnoseCommand, FindsDelayAndLagMissingFromThePublishedModel) {
   const std::string models = "'" SOFTGRIP_SOURCE_DIR "/config/models/";
   int seed = 0;
   for (const char* signal : {"tp1", "tp2", "sp2"}) {
@@ -92,7 +92,7 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
 
 /// Simulates a technician: runs a diagnosis, enters gauge readings into the proposed file, and repeats the
 /// diagnosis.
-TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
+TEST_F(DiagnoseCommand, GaugeReadingsSeparateStiffeningFromTheSensor) {
   const std::string twin = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
   write("finger.yaml", read_file(twin, 100'000).value() + "  - stiffening:\n      stiffening_per_mm: 0.01\n");
   std::string logs;
@@ -172,21 +172,21 @@ TEST_F(DiagnoseCommand, TimeThatRunsBackwardsIsRefused) {
   EXPECT_FALSE(fs::exists(folder_ / "result"));
 }
 
-TEST_F(DiagnoseCommand, UnloadingNeverSeenIsSaid) {
+TEST_F(DiagnoseCommand, WarnsOfLogsWithoutUnloading) {
   const auto ramp = [](double t) { return t; };
   write_log("loading.csv", 50, ramp, [](double t) { return 0.7 * t + 0.05 * std::pow(t, 1.2); });
   ASSERT_EQ(diagnose("loading.csv"), 0) << read("err.txt");
   EXPECT_TRUE(warned_of(diagnosis(), "the logs contain no unloading"));
 }
 
-TEST_F(DiagnoseCommand, OneAmplitudeIsSaid) {
+TEST_F(DiagnoseCommand, WarnsOfLogsWithOnlyOneAmplitude) {
   const auto same = [](double t) { return 40 * (1 - std::abs(std::fmod(t, 10) / 5 - 1)); };
   write_log("same.csv", 80, same, [&](double t) { return 0.6 * same(t) + 0.002 * same(t) * same(t); });
   ASSERT_EQ(diagnose("same.csv"), 0) << read("err.txt");
   EXPECT_TRUE(warned_of(diagnosis(), "the logs contain only one amplitude"));
 }
 
-TEST_F(DiagnoseCommand, ReadingsThatHaveNothingToDoWithTheCommandAreRefused) {
+TEST_F(DiagnoseCommand, ReadingsUnrelatedToTheCommandAreRefused) {
   write_log("elsewhere.csv", 100, triangles_kpa,
             [](double t) { return 3 * std::sin(2.1 * t) + 2 * std::sin(5.3 * t); });
   EXPECT_EQ(diagnose("elsewhere.csv"), 3);

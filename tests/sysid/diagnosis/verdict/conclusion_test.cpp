@@ -9,7 +9,7 @@
 namespace softgrip::sysid::conclusion_test {
 namespace {
 
-TEST(Conclusion, WithoutACauseMayLeaveAPartOfTheNoise) {
+TEST(Conclusion, OutliersPermitAnUncorrelatedUnexplainedError) {
   const std::vector<Log> logs;
   const model::Model given;
   const DiagnosisOptions options;
@@ -52,7 +52,7 @@ TEST(RunErrors, AreTheErrorsOfEachRun) {
   EXPECT_DOUBLE_EQ(runs[1].extended, 1);
 }
 
-TEST(RunErrors, AreThoseOfBothHalvesOfASingleRun) {
+TEST(RunErrors, SingleRunGivesTheErrorsOfBothHalves) {
   const std::vector<Record> records = known_campaign(1);
   const Division by_unit = divide_by_unit(records);
   const BlockLosses given = losses(by_unit, 4, 9);

@@ -87,7 +87,7 @@ TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
   EXPECT_TRUE(shown.not_tested.empty());
 }
 
-TEST(UntestedCauses, ALoopWhoseValveSticksIsNamedByItsPhase) {
+TEST(UntestedCauses, ClosedLoopPhaseNamesAStickingValve) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
   correct_by_logs(d, loop(0.3, 0));
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"valve_deadband"});
@@ -95,7 +95,7 @@ TEST(UntestedCauses, ALoopWhoseValveSticksIsNamedByItsPhase) {
   EXPECT_EQ(d.verdict, Verdict::partly_explained);
 }
 
-TEST(UntestedCauses, ALoopThatADisturbanceDrivesKeepsItsCauses) {
+TEST(UntestedCauses, DisturbedClosedLoopKeepsTheNamedCauses) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
   correct_by_logs(d, loop(0, 1));
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
@@ -103,7 +103,7 @@ TEST(UntestedCauses, ALoopThatADisturbanceDrivesKeepsItsCauses) {
   EXPECT_NE(d.warnings.front().find("closed loop"), std::string::npos);
 }
 
-TEST(UntestedCauses, OneLogOfAPlannedCommandIsNoLoop) {
+TEST(UntestedCauses, OnePlannedLogRulesOutAClosedLoop) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
   std::vector<Log> logs = loop(0.3, 0);
   logs.push_back(planned(5).front());
@@ -117,7 +117,7 @@ std::vector<Record> records_at(double rate_hz, std::size_t count) {
   return make_records(std::vector<Log>(count, log), {});
 }
 
-TEST(DenseLogs, ManyReadingsCloseTogetherAreAveragedAndItIsSaid) {
+TEST(DenseLogs, DenseReadingsAreAveragedWithAWarning) {
   std::vector<Record> records = records_at(2000, 1);
   ASSERT_GT(records.front().readings, enough_readings);
   const double length_s = records.front().length_s();
@@ -129,7 +129,7 @@ TEST(DenseLogs, ManyReadingsCloseTogetherAreAveragedAndItIsSaid) {
   EXPECT_NE(warnings.front().find("2000 samples per second"), std::string::npos) << warnings.front();
 }
 
-TEST(DenseLogs, LongLogsAndShortOnesAreLeftAlone) {
+TEST(DenseLogs, LongAndShortLogsAreNotAveraged) {
   std::vector<std::string> warnings;
   std::vector<Record> long_campaign = records_at(100, 12);
   EXPECT_FALSE(average_dense(long_campaign, warnings));

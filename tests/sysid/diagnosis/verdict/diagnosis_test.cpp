@@ -31,7 +31,7 @@ model::Model without_valve() {
 
 // The first cause explains nearly the whole error. The small remaining error must not start a search for an
 // alternative structure.
-TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
+TEST(Diagnosis, SmallResidualStartsNoSearchForAnotherStructure) {
   const model::Model given = without_valve();
   const model::Model truth =
       model::with_block(given, model::block_of<model::TransportDelay>({{"delay_s", 0.4}}));
@@ -83,7 +83,7 @@ TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
 
 // The outliers are found before an alternative structure is fitted. The result with the alternative structure
 // must still contain the outliers as a cause.
-TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
+TEST(Diagnosis, OutliersStayNamedWithAnAlternativeStructure) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
   plays = model::with_block(std::move(plays), {model::block_type<model::PrandtlIshlinskii>(),
@@ -120,7 +120,7 @@ std::vector<Log> read_at(const model::Model& truth, const std::function<std::siz
   return logs;
 }
 
-TEST(Diagnosis, AReadingThatIsSlowerThanTheLogIsSampling) {
+TEST(Diagnosis, ReadingSlowerThanTheLogIsNamedSampling) {
   const model::Model truth = without_valve();
   const auto diagnosis = diagnose(read_at(truth, [](std::size_t i) { return i - i % 9; }), truth, {});
   ASSERT_TRUE(diagnosis) << diagnosis.error();
@@ -130,7 +130,7 @@ TEST(Diagnosis, AReadingThatIsSlowerThanTheLogIsSampling) {
   EXPECT_NEAR(diagnosis->causes[0].parameters.at(0).value, 9 * 0.02, 1e-3);
 }
 
-TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
+TEST(Diagnosis, ReadingAheadOfTheCommandIsAClockOffset) {
   const model::Model truth = without_valve();
   const auto diagnosis = diagnose(read_at(truth, [](std::size_t i) { return i + 7; }), truth, {});
   ASSERT_TRUE(diagnosis) << diagnosis.error();
@@ -202,7 +202,7 @@ TEST(Budget, IsInSquareMillimetres) {
   EXPECT_DOUBLE_EQ(budget.left(), 0.01 - 0.0025);
 }
 
-TEST(Budget, WhatIsBelowTheNoiseIsNothing) {
+TEST(Budget, ErrorBelowTheNoiseCountsAsZero) {
   const Budget budget = budget_of(errors_mm(0.05, 0.04, 0.03, 0.05));
   EXPECT_EQ(budget.excess(), 0);
   EXPECT_EQ(budget.left(), 0);
@@ -210,7 +210,7 @@ TEST(Budget, WhatIsBelowTheNoiseIsNothing) {
       << "if the mean square error is 0, every share must be 0";
 }
 
-TEST(Budget, AShareStaysWithinTheWhole) {
+TEST(Budget, ShareIsLimitedToTheRangeFrom0To100Percent) {
   const Budget budget = budget_of(errors_mm(0.5, 0.3, 0.1, 0));
   EXPECT_DOUBLE_EQ(budget.share_percent(worth_mm2(0.045)), 50);
   EXPECT_EQ(budget.share_percent(worth_mm2(1)), 100);

@@ -54,7 +54,7 @@ Line line_through(const Log& log, bool even) {
   return {slope, (sp - slope * su) / n};
 }
 
-TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
+TEST(MeasuredValve, HeldOutLossComesFromAFitToTheOtherBlocks) {
   const std::vector<Log> logs{straight_log(8, 0.5, 3)};
   const MeasuredValve valve(logs, false);
   const BlockLosses losses = valve.held_out_losses({}, valve.fit({}, {ValveStage{}}));
@@ -72,7 +72,7 @@ TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
   }
 }
 
-TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
+TEST(MeasuredValve, GaugeStandardErrorsMatchALinearRegression) {
   const std::vector<Log> logs{straight_log(40, 0, 5)};
   const MeasuredValve valve(logs, false);
   const ValveStage stage = valve.fit({}, {ValveStage{}}, 1e-12);
@@ -93,7 +93,7 @@ TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
   EXPECT_LT(errors[1], 1.4 * of_zero);
 }
 
-TEST(MeasuredValve, ALastingErrorCountsOncePerBlock) {
+TEST(MeasuredValve, BlockwiseOffsetRaisesTheStandardError) {
   const std::vector<Log> white{straight_log(40, 0, 7)}, lasting{straight_log(40, noise_kpa, 7)};
   const auto error_of = [](const std::vector<Log>& logs) {
     const MeasuredValve valve(logs, false);
@@ -129,7 +129,7 @@ std::optional<LostPressure> lost_of(const std::vector<Log>& logs) {
   return find_lost_pressure(logs, valve, {}, valve.fit({}, {ValveStage{}}));
 }
 
-TEST(FindLostPressure, SaysWhatIsMissingAtTheHighestPressure) {
+TEST(FindLostPressure, ReportsTheMissingPressureAtTheHighestCommand) {
   const auto lost = lost_of(logs_of([](double u) { return 0.97 * u; }));
   ASSERT_TRUE(lost);
   EXPECT_NEAR(lost->highest_kpa, 0.97 * 60, 5 * low_noise_kpa);
@@ -139,26 +139,26 @@ TEST(FindLostPressure, SaysWhatIsMissingAtTheHighestPressure) {
   EXPECT_LT(rmse_mm(lost->losses_kpa2), 0.3 * rmse_mm(lost->without_kpa2));
 }
 
-TEST(FindLostPressure, IsNothingWhereScalesMayDifferByAsMuchOrTheOtherWay) {
+TEST(FindLostPressure, IsAbsentForAScaleWithinToleranceOrAboveOne) {
   for (const double scale : {0.99, 1.0, 1.05})
     EXPECT_FALSE(lost_of(logs_of([&](double u) { return scale * u; }))) << scale;
 }
 
-TEST(FindLostPressure, IsNothingWhereAConstantIsMissing) {
+TEST(FindLostPressure, IsAbsentForAConstantOffset) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return u - 3; })));
 }
 
 // The measured pressure does not exceed 52 kPa, even if the command does. A scale error of the pressure
 // sensor explains half of the difference. A leak explains less of it, because its curve bends in the opposite
 // direction. Therefore no leak may be reported.
-TEST(FindLostPressure, IsNothingWhereTheHighestPressuresAloneAreMissing) {
+TEST(FindLostPressure, IsAbsentForAPressureLimit) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);
   ASSERT_LT(valve.fit({}, {ValveStage{}}).gauge_gain, 1 - scales_agree_within);
   EXPECT_FALSE(lost_of(logs));
 }
 
-TEST(FindLostPressure, IsNothingWhereMostOfWhatIsLeftIsSomethingElse) {
+TEST(FindLostPressure, IsAbsentIfMostOfTheErrorHasAnotherCause) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return 0.97 * u + 2 * std::sin(u); })));
 }
 

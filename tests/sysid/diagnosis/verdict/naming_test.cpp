@@ -18,7 +18,7 @@ namespace {
 
 using model::SignalName;
 
-TEST(BlockNumbers, HaveIntervalsWhereTheFitMovedThemThatHoldTheTruth) {
+TEST(BlockNumbers, OnlyDeterminedParametersHaveIntervals) {
   const model::Model truth = model::only(loaded("bench_twin"), [](const model::BlockInfo& info) {
     return info.station != model::Station::valve;
   });
@@ -40,7 +40,7 @@ TEST(BlockNumbers, HaveIntervalsWhereTheFitMovedThemThatHoldTheTruth) {
   }
 }
 
-TEST(BlockNumbers, HaveNoIntervalsBelowWhatANumberMayBe) {
+TEST(BlockNumbers, IntervalsEndAtTheLowerParameterBound) {
   model::Model truth = loaded("bench_twin");
   const std::size_t delay = model::block_type<model::TransportDelay>();
   truth.blocks[*model::position_of(truth, delay)].values[0] = 0.001;
@@ -55,7 +55,7 @@ TEST(BlockNumbers, HaveNoIntervalsBelowWhatANumberMayBe) {
   EXPECT_EQ(numbers[0].ci95.lower, 0);
 }
 
-TEST(AlternativeTitle, DistinguishesAnAlternativeThatIsNamedItselfFromOneThatIsNot) {
+TEST(AlternativeTitle, MarksAnAlreadyNamedCauseAsFurther) {
   const Cause delay = *find_cause(causes::TransportDelay::id), lag = *find_cause(causes::ValveLag::id);
   NamedCause first, second;
   first.cause = delay;
@@ -64,7 +64,7 @@ TEST(AlternativeTitle, DistinguishesAnAlternativeThatIsNamedItselfFromOneThatIsN
   EXPECT_EQ(alternative_title(lag, {first, second}), "a further valve lag");
 }
 
-TEST(VerdictSentence, SaysThatAnErrorFallsWhereItFallsAlone) {
+TEST(VerdictSentence, ReportsAReductionOnlyIfTheErrorDecreases) {
   Diagnosis d;
   NamedCause lag;
   lag.cause = *find_cause(causes::ValveLag::id);
@@ -81,7 +81,7 @@ TEST(VerdictSentence, SaysThatAnErrorFallsWhereItFallsAlone) {
             "which no finger has; the held-out error is 2.3 mm without and 2.5 mm with it.");
 }
 
-TEST(DataWarnings, SayWhatALogWithoutUnloadingCannotShow) {
+TEST(DataWarnings, ReportUndeterminedHysteresisWithoutUnloading) {
   Log ramp;
   ramp.name = "ramp";
   for (int i = 0; i < 500; ++i) {
@@ -130,7 +130,7 @@ Named delay_of(SignalName signal, const model::Model& twin) {
   return named;
 }
 
-TEST(MixedIntervals, HoldTheDelayWhereALagIsInQuestion) {
+TEST(MixedIntervals, CoverTheTrueDelayIfALagIsUndecided) {
   const Named named = delay_of(SignalName::tp2, loaded("bench_twin"));
   ASSERT_EQ(named.causes.size(), 1U);
   ASSERT_EQ(named.causes.front().cause.id, "transport_delay");

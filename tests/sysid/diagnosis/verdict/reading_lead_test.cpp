@@ -9,7 +9,7 @@
 namespace softgrip::sysid::reading_lead_test {
 namespace {
 
-TEST(WithDriveAhead, TheDriveComesEarlierAndTheStartStays) {
+TEST(WithDriveAhead, ShiftsTheDriveEarlierAndKeepsTheFirstSample) {
   const std::vector<Record> before = known_campaign(1);
   // The lead of 0.05 s is 2.5 samples long. Between two samples, the command is linear.
   const Record after = with_drive_ahead(before, 0.05).front();
@@ -19,7 +19,7 @@ TEST(WithDriveAhead, TheDriveComesEarlierAndTheStartStays) {
         << i;
 }
 
-TEST(WithDriveAhead, ReadingsThatAnswerALaterDriveAreHidden) {
+TEST(WithDriveAhead, HidesTheLastReadingsWithoutAShiftedDrive) {
   const std::vector<Record> before = known_campaign(1);
   const Record after = with_drive_ahead(before, 0.1).front();
   const std::size_t last = after.size() - 1;
@@ -28,7 +28,7 @@ TEST(WithDriveAhead, ReadingsThatAnswerALaterDriveAreHidden) {
   EXPECT_EQ(after.readings, before[0].readings - 5);
 }
 
-TEST(WithDriveAhead, AHeldDriveKeepsItsSteps) {
+TEST(WithDriveAhead, HeldDriveIsShiftedWithoutInterpolation) {
   std::vector<Record> before = known_campaign(1);
   before[0].held = true;
   const Record after = with_drive_ahead(before, 0.05).front();

@@ -139,7 +139,7 @@ void expect_holds(const ValveFindings& found, std::string_view cause, std::strin
   EXPECT_LT(half, 0.1 * truth) << parameter;
 }
 
-TEST(FindInValve, NamesDelayAndLagWithIntervalsAndNothingThatIsNotThere) {
+TEST(FindInValve, NamesOnlyDelayAndLagWithCorrectIntervals) {
   const ValveFindings found = found_in(own_logs({}), without_a_valve());
   EXPECT_EQ(found.named.size(), 2U);
   expect_holds(found, "transport_delay", "delay_s", 0.05);
@@ -147,13 +147,13 @@ TEST(FindInValve, NamesDelayAndLagWithIntervalsAndNothingThatIsNotThere) {
   EXPECT_NEAR(found.heldout_rmse_kpa, noise_kpa, 0.02 * noise_kpa + 0.002);
 }
 
-TEST(FindInValve, NamesNothingThatTheGivenModelHas) {
+TEST(FindInValve, NamesNoCauseThatTheGivenModelContains) {
   model::Model given = model::with_block(without_a_valve(), {model::block_type<model::ValveLag>(), {0.3}});
   given = model::with_block(std::move(given), {model::block_type<model::TransportDelay>(), {0.1}});
   EXPECT_TRUE(found_in(own_logs({}), given).named.empty());
 }
 
-TEST(FindInValve, NamesADeadBandASupplyThatSagsAndALimit) {
+TEST(FindInValve, NamesADeadBandASupplySagAndAPressureLimit) {
   OwnValve ignores, sags, stops;
   ignores.band_kpa = 1.5;
   sags.coupling = 0.3;
@@ -163,7 +163,7 @@ TEST(FindInValve, NamesADeadBandASupplyThatSagsAndALimit) {
   expect_holds(found_in(own_logs(stops, 31), without_a_valve()), "pressure_saturation", "limit_kpa", 52);
 }
 
-TEST(FindInValve, ADeadTimeThatASecondLagExplainsAsWellHasItForItsAlternative) {
+TEST(FindInValve, SecondLagIsAnAlternativeToADeadTime) {
   const auto alternatives_of_delay = [](const OwnValve& valve) -> std::optional<std::vector<std::string>> {
     for (const NamedCause& named : found_in(own_logs(valve, 111), without_a_valve()).named) {
       if (named.cause.id != "transport_delay") continue;
@@ -183,7 +183,7 @@ bool names(const ValveFindings& found, std::string_view cause) {
                      [&](const NamedCause& named) { return named.cause.id == cause; });
 }
 
-TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
+TEST(FindInValve, NamesALeakWithPressureScaleAsAlternative) {
   const ValveFindings found = found_in(own_logs({.leak = 0.2}, 91), without_a_valve());
   // The true value of `share` is 0.2 squared. The tolerance is necessary because the simulation and the model
   // have different critical pressure ratios.
@@ -204,7 +204,7 @@ TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
   EXPECT_TRUE(names(found_in(own_logs({.scale = 0.96}, 94), without_a_valve()), "leak"));
 }
 
-TEST(FindInValve, NamesNoLeakWhereScalesMayDifferSagsOrCeilingsTakeIt) {
+TEST(FindInValve, NamesNoLeakForOtherEffectsOrSmallScaleErrors) {
   for (const OwnValve& valve :
        {OwnValve{.scale = 0.99}, OwnValve{.scale = 1.04}, OwnValve{.limit_kpa = 40},
         OwnValve{.coupling = 0.5}, OwnValve{.band_kpa = 2}, OwnValve{.second_s = 0.3}}) {
@@ -214,7 +214,7 @@ TEST(FindInValve, NamesNoLeakWhereScalesMayDifferSagsOrCeilingsTakeIt) {
   }
 }
 
-TEST(FindInValve, TellsFillingFromVentingWhereTheyDiffer) {
+TEST(FindInValve, SeparatesFillingFromVentingTimeConstants) {
   OwnValve valve;
   valve.filling_s = 0.05;
   valve.venting_s = 0.12;
@@ -232,7 +232,7 @@ TEST(FindInValve, AValveOfSecondOrderHasNoDeadBandNoLimitAndNoSag) {
   }
 }
 
-TEST(FindInValve, NamesNothingInAValveThatGoesItsOwnWay) {
+TEST(FindInValve, NamesNothingIfTheValveModelFitsPoorly) {
   OwnValve valve;
   valve.limit_kpa = 35;
   std::vector<Log> logs = own_logs(valve, 81);
@@ -246,7 +246,7 @@ TEST(FindInValve, NamesNothingInAValveThatGoesItsOwnWay) {
   EXPECT_TRUE(found.named.empty());
 }
 
-TEST(FindInValve, WhatMovesTheFingerByLessThanItsNoiseIsNotNamed) {
+TEST(FindInValve, EffectBelowTheDisplacementNoiseIsNotNamed) {
   OwnValve valve;
   valve.band_kpa = 0.4;
   std::vector<Log> logs = own_logs(valve, 61);
@@ -279,7 +279,7 @@ std::vector<double> displacement_mm(const model::Model& finger, Log log) {
   return moved;
 }
 
-TEST(Diagnose, AFingerThatIsExplainedFromTheMeasuredPressureStillHasAValveThatIgnoresSmallChanges) {
+TEST(Diagnose, ValveDeadBandIsNamedForAnAdequateFingerModel) {
   const model::Model finger = without_a_valve();
   std::vector<Log> logs = own_logs({.band_kpa = 2}, 71);
   std::mt19937 random(5);

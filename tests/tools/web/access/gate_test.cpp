@@ -10,7 +10,7 @@ namespace {
 const std::string look(24, 'a');
 const std::string operate(24, 'b');
 
-TEST(OwnHost, IsANumberOrAKnownName) {
+TEST(OwnHost, IsAnIpAddressLocalhostOrAConfiguredName) {
   const std::vector<std::string> names{"gripper.example.org"};
   for (const char* own : {"localhost", "LOCALHOST:8017", "127.0.0.1", "127.0.0.1:8017", "[::1]:8017", "[::1]",
                           "192.168.1.20:80", "gripper.example.org", "Gripper.Example.org:8017"})
@@ -21,7 +21,7 @@ TEST(OwnHost, IsANumberOrAKnownName) {
     EXPECT_FALSE(is_own_host(other, names)) << other;
 }
 
-TEST(OwnOrigin, IsThePageOfTheSameHostAndPort) {
+TEST(OwnOrigin, RequiresTheSameHostAndPort) {
   EXPECT_TRUE(is_own_origin("http://127.0.0.1:8017", "127.0.0.1:8017"));
   EXPECT_TRUE(is_own_origin("https://gripper", "GRIPPER"));
   for (const char* other : {"http://127.0.0.1:8018", "http://127.0.0.1", "null", "", "127.0.0.1:8017",
@@ -29,7 +29,7 @@ TEST(OwnOrigin, IsThePageOfTheSameHostAndPort) {
     EXPECT_FALSE(is_own_origin(other, "127.0.0.1:8017")) << other;
 }
 
-TEST(Headers, ACookieAndABearer) {
+TEST(Headers, ReturnTheCookieAndTheBearerToken) {
   EXPECT_EQ(cookie_of("a=1; softgrip=xyz; b=2", "softgrip"), "xyz");
   EXPECT_EQ(cookie_of("softgrip=xyz", "softgrip"), "xyz");
   EXPECT_EQ(cookie_of("notsoftgrip=xyz; softgripx=1", "softgrip"), "");
@@ -52,7 +52,7 @@ class GateTest : public ::testing::Test {
   Settings settings_;
 };
 
-TEST_F(GateTest, ForgedOriginsAndStrangeNamesAreTurnedAway) {
+TEST_F(GateTest, RefusesForeignOriginsAndUnknownHosts) {
   Gate gate = this->gate(Role::operate);
   Credentials forged = page();
   EXPECT_EQ(gate.admit(forged, true, 0), Role::operate);
@@ -73,7 +73,7 @@ TEST_F(GateTest, ForgedOriginsAndStrangeNamesAreTurnedAway) {
       << "a request whose Host header names another host must be refused";
 }
 
-TEST_F(GateTest, ATokenInAHeaderNeedsNoPage) {
+TEST_F(GateTest, ATokenInAHeaderNeedsNoOrigin) {
   Gate gate = this->gate(Role::none);
   Credentials collector{"localhost", "", "", "", "Bearer " + look};
   EXPECT_EQ(gate.admit(collector, false, 0), Role::look);
@@ -83,7 +83,7 @@ TEST_F(GateTest, ATokenInAHeaderNeedsNoPage) {
   EXPECT_EQ(gate.admit(collector, false, 0), Role::none);
 }
 
-TEST_F(GateTest, SessionsEndAndTokensDecideWhatTheyMay) {
+TEST_F(GateTest, ASessionHasTheRoleOfItsTokenUntilItEnds) {
   Gate gate = this->gate(Role::none);
   EXPECT_EQ(gate.open("unknown", 0).error().status, 401);
   const std::string id = *gate.open(operate, 0);

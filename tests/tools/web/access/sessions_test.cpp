@@ -12,7 +12,7 @@ namespace {
 constexpr Grant look{Role::look, 0};
 constexpr Grant operate{Role::operate, 1};
 
-TEST(Sessions, AreFewPerTokenAndTheIdlestGoes) {
+TEST(Sessions, ANewSessionReplacesTheMostIdleOneOfTheToken) {
   Sessions sessions(100, 1000);
   const std::string first = sessions.open(look, 0);
   const std::string second = sessions.open(look, 1);
@@ -24,7 +24,7 @@ TEST(Sessions, AreFewPerTokenAndTheIdlestGoes) {
   EXPECT_EQ(sessions.role_of(first, 5), Role::look);
 }
 
-TEST(Sessions, AnEndedOneLeavesItsPlace) {
+TEST(Sessions, AClosedSessionDoesNotCountTowardsTheLimit) {
   Sessions sessions(100, 1000);
   const std::string closed = sessions.open(look, 0);
   const std::string kept = sessions.open(look, 1);
@@ -34,7 +34,7 @@ TEST(Sessions, AnEndedOneLeavesItsPlace) {
   EXPECT_EQ(sessions.role_of(kept, 4), Role::look);
 }
 
-TEST(Sessions, WhateverOneTokenDoesTheOthersKeepTheirs) {
+TEST(Sessions, SessionsOfOneTokenDoNotEndThoseOfAnotherToken) {
   constexpr unsigned seed = 47;
   std::mt19937 random(seed);
   constexpr Nanoseconds long_enough = 1'000'000;

@@ -14,7 +14,7 @@ namespace {
 const std::string look(24, 'a');
 const std::string operate(24, 'b');
 
-TEST(Tokens, EachHasItsRoleAndNothingElseHasOne) {
+TEST(Tokens, OnlyAListedTokenHasARole) {
   const auto tokens = Tokens::parse("# the wall\nlook " + look + "\n\n  operate\t" + operate + "\r\n");
   ASSERT_TRUE(tokens) << tokens.error();
   EXPECT_EQ(tokens->role_of(look), Role::look);
@@ -25,7 +25,7 @@ TEST(Tokens, EachHasItsRoleAndNothingElseHasOne) {
   EXPECT_EQ(tokens->role_of(std::string(23, 'a') + "c"), Role::none);
 }
 
-TEST(Tokens, WhatIsNoListOfThemIsRefusedAndNeverRepeated) {
+TEST(Tokens, RefusesAMalformedListWithoutPrintingTheTokens) {
   const auto said = [](const std::string& text) {
     const auto tokens = Tokens::parse(text);
     EXPECT_FALSE(tokens);
@@ -42,7 +42,7 @@ TEST(Tokens, WhatIsNoListOfThemIsRefusedAndNeverRepeated) {
   EXPECT_NE(said("look " + look + "\noperate " + look).find("earlier line"), std::string::npos);
 }
 
-TEST(Tokens, AFileThatEverybodyMayReadIsRefused) {
+TEST(Tokens, RefusesAWorldReadableFile) {
   const auto path = std::filesystem::temp_directory_path() / ("tokens_" + std::to_string(::getpid()));
   std::ofstream(path) << "look " << look << "\n";
   ASSERT_EQ(::chmod(path.c_str(), 0640), 0);
@@ -55,7 +55,7 @@ TEST(Tokens, AFileThatEverybodyMayReadIsRefused) {
   EXPECT_FALSE(Tokens::load(path));
 }
 
-TEST(Tokens, EqualTextsAreEqual) {
+TEST(Tokens, ConstantTimeComparisonFindsOnlyEqualTexts) {
   EXPECT_TRUE(equal_in_constant_time("", ""));
   EXPECT_TRUE(equal_in_constant_time("abc", "abc"));
   EXPECT_FALSE(equal_in_constant_time("abc", "abd"));

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(ChannelMetrics, EveryFingerHasItsOwn) {
+TEST(ChannelMetrics, EachChannelHasSeparateMetrics) {
   MetricText metrics;
   tell_channels(
       Json::parse(

@@ -81,7 +81,7 @@ TEST(Metrics, ThePressureUseIsTheDistanceFromRest) {
   }
 }
 
-TEST(Metrics, CountWhatHasHappened) {
+TEST(Metrics, CountGripResultsSequencesAndFaults) {
   const std::string text = told(status(), statistics());
   for (const char* line :
        {"softgrip_grip_results_total{channel=\"left\",result=\"part_lost\"} 2",
@@ -92,7 +92,7 @@ TEST(Metrics, CountWhatHasHappened) {
     EXPECT_TRUE(has_line(text, line)) << line << "\n" << text;
 }
 
-TEST(Metrics, WhatIsNotKnownIsNotThere) {
+TEST(Metrics, OmitMetricsWithUnknownValues) {
   const std::string text = told(status(), statistics());
   EXPECT_EQ(text.find("softgrip_pressure_pascals{"), std::string::npos) << "the pressure is not measured";
   EXPECT_EQ(text.find("softgrip_reference_meters{"), std::string::npos);

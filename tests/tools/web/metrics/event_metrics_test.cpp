@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(EventMetrics, EveryResultIsThereBeforeItHappens) {
+TEST(EventMetrics, EveryResultIsReportedAsZeroInitially) {
   MetricText metrics;
   tell_events(Json::array(), Json::parse(R"([{"name": "left"}])"), metrics);
   for (const char* result : {"holding", "no_part", "part_lost", "released", "error"}) {
@@ -23,7 +23,7 @@ TEST(EventMetrics, EveryResultIsThereBeforeItHappens) {
   EXPECT_NE(metrics.text().find("softgrip_sequences_started_total 0\n"), std::string::npos);
 }
 
-TEST(EventMetrics, NothingIsToldOfEventsThatAreNotKnown) {
+TEST(EventMetrics, ReportsNothingIfTheEventsAreUnknown) {
   MetricText metrics;
   tell_events(nullptr, Json::array(), metrics);
   EXPECT_EQ(metrics.text(), "");

@@ -17,7 +17,7 @@ std::string told(const Json& health) {
   return metrics.text();
 }
 
-TEST(HealthMetrics, TellStateSuspectsAndWhen) {
+TEST(HealthMetrics, ReportStateSuspectsAndTimeOfTheCheck) {
   const std::string text = told(Json::parse(R"({"made_unix_s": 1795313181, "fingers": [
     {"finger": "left", "state": "alarm", "suspects": [{"id": "leak"}, {"id": "ageing"}]},
     {"finger": "right", "state": "steady", "suspects": []}]})"));
@@ -32,12 +32,12 @@ TEST(HealthMetrics, TellStateSuspectsAndWhen) {
   EXPECT_EQ(text.find("softgrip_health_shared"), std::string::npos);
 }
 
-TEST(HealthMetrics, TellWhatTheFingersShare) {
+TEST(HealthMetrics, ReportTheNumbersThatChangedOnAllFingers) {
   const std::string text = told(Json::parse(R"({"fingers": [], "shared": ["gain_mm", 3]})"));
   EXPECT_NE(text.find("softgrip_health_shared{number=\"gain_mm\"} 1\n"), std::string::npos) << text;
 }
 
-TEST(HealthMetrics, OfNothingAndOfNonsenseNothingIsTold) {
+TEST(HealthMetrics, ReportNothingForMissingOrMalformedResults) {
   EXPECT_EQ(told(nullptr), "");
   for (const char* nonsense : {"{}", R"({"fingers": 3})", R"({"fingers": [1, null, {"suspects": 4}]})"})
     EXPECT_EQ(told(Json::parse(nonsense)).find("} 1\n"), std::string::npos) << nonsense;
