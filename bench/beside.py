@@ -151,15 +151,15 @@ class Study:
              f"± {self.scipy['beta_ci95']:.2g} mm/kPa from the Jacobian, as if every sample were independent",
              f"± {half:.2g} mm/kPa: the residuals are correlated (lag-1 correlation "
              f"{residuals['lag1_correlation']:.2f}), so they contain as much information as {residuals['effective_samples']:.0f} independent samples"),
-            ("the model has no inverse", f"not reported: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
-             "are printed side by side", next((w for w in self.identified["warnings"] if "inverse response" in w), "-")),
+            ("the model has no inverse", f"not reported; the script only prints beta {self.scipy['beta']:.3f} and alpha "
+             f"{self.scipy['alpha']:.3f} mm/kPa", next((w for w in self.identified["warnings"] if "inverse response" in w), "-")),
             ("cause of the missing inverse", "not reported, because the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
-            ("improvement by the named causes", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
+            ("reduction of the held-out RMS error by the named causes", "-", f"steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
-            ("a log in the wrong unit, inverted, swapped", "the fit is made, or does not converge",
-             "reported with the number that shows it ([how](../how-to/import.md#plausibility-warnings))"),
-            ("reproduction of the numbers", "from the files that the user has kept",
+            ("a log with a wrong unit, an inverted sign or swapped columns", "not reported; the fit ends with a wrong model, or does not converge",
+             "reported with a warning that states the suspicious number ([how](../how-to/import.md#plausibility-warnings))"),
+            ("reproduction of the numbers", "possible if the user has kept all files",
              "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
 
     def page(self):
@@ -167,41 +167,43 @@ class Study:
             *results_page.head(
                 "Compared with Octave and SciPy",
                 f"Octave, SciPy and `softgrip identify` fit the demo's log with RMS errors of {mm(self.octave_result['rmse_mm'])}, "
-                f"{mm(self.scipy['rmse_mm'])} and {mm(self.identified['rmse_mm']['tp1'])} mm. For Octave and SciPy, the user must write a script; for softgrip, no script is needed.",
+                f"{mm(self.scipy['rmse_mm'])} and {mm(self.identified['rmse_mm']['tp1'])} mm. With Octave or SciPy, the user must write a script. With softgrip, the user needs no script.",
                 self.version, f"bench/beside.py --runs {self.runs}",
                 f"simulated logs; {results_page.here()}"),
-            "The identification of the demo is repeated with three programs: in Octave with `lsqcurvefit` (the paper used `lsqcurvefit` of MATLAB), in Python with SciPy,",
-            "and with `softgrip`. Each program fits the log `tp1` from 20 start points and predicts the logs `steps` and `sp2`. `bench/beside.py` writes this page with all its numbers; the script needs the packages of `scripts/packages.sh tests readers benchmarks`.",
+            "The identification of the demo's model is repeated with three programs: Octave with `lsqcurvefit`, Python with SciPy, and `softgrip`. The authors of the",
+            "published model used `lsqcurvefit` of MATLAB. Each program fits a model to the log `tp1` from 20 start points and predicts the logs `steps` and `sp2`.",
+            "`bench/beside.py` writes this page with all its numbers. `bench/beside.py` needs the packages of `scripts/packages.sh tests readers benchmarks`.",
             "",
-            "## Steps",
+            "## Steps of the identification",
             "",
-            *table(["", "Octave", "SciPy", "softgrip"], [
+            *table(["step", "Octave", "SciPy", "softgrip"], [
                 ("read the log", "`csvread`, columns by number", "`genfromtxt`, columns by name",
-                 "`--data`; a file that is not a log is refused with the line, or [imported](../how-to/import.md)"),
+                 "`--data`. If a file is not a log, softgrip states the line of the error; such a file can be [imported](../how-to/import.md)"),
                 ("simulate the model", f"{SIMULATOR.name} ({lines_of(SIMULATOR)} lines of C), and {lines_of(MEX)} lines of C that call it",
                  "the C simulator of the Octave column, called with ctypes", "built in"),
-                ("parametrise, bound, start", "logarithms and bounds by hand, 20 starts in a loop",
+                ("choose parameters, bounds and start points", "logarithms and bounds by hand, 20 starts in a loop",
                  "logarithms and bounds by hand, 20 starts in a loop", "`--starts 20`"),
-                ("fit", "`lsqcurvefit`", "`least_squares`", "`softgrip identify`"),
-                ("intervals", "from the Jacobian by hand", "from the Jacobian by hand", "in the report"),
+                ("fit the parameters", "`lsqcurvefit`", "`least_squares`", "`softgrip identify`"),
+                ("compute confidence intervals", "from the Jacobian by hand", "from the Jacobian by hand", "in the report"),
                 ("predict the logs that were not fitted", "by hand", "by hand", "`--validate`"),
-                ("figures, series, report", "by hand", "by hand", "`report.html`, `series.csv`")]),
-            "## Lines, time, errors",
+                ("write figures, time series and report", "by hand", "by hand", "`report.html`, `series.csv`")]),
+            "## Lines of code, processor time and errors",
             "",
-            *table(["", "lines to write", "processor time [s]", "fitted: tp1 [mm]", "held out: steps [mm]", "held out: sp2 [mm]",
+            *table(["program", "lines of code that the user writes", "processor time [s]", "RMSE on the fitted log tp1 [mm]",
+                    "RMSE on the held-out log steps [mm]", "RMSE on the held-out log sp2 [mm]",
                     "starts that reached the smallest error"], self.summary_rows()),
-            "The numbers of lines include the simulator, but not blank lines and comments. The processor time is the sum for the complete program on all",
-            f"cores: the median of {self.runs} runs, or one run for the diagnosis. The three fits have equal errors, because the problem is",
+            "The numbers of lines include the simulator, but not blank lines and comments. The processor time is the sum over all cores for the complete program.",
+            f"The table states the median of {self.runs} runs for each fit, and the time of one run for the diagnosis. The three fits have equal errors, because the problem is",
             "small and each optimiser uses a compiled simulator.",
             "",
             "## Results that only softgrip gives",
             "",
-            *table(["", "Octave and SciPy", "softgrip"], self.unsaid_rows()),
+            *table(["result", "Octave and SciPy", "softgrip"], self.unsaid_rows()),
             "## Other programs can read the exported files",
             "",
-            "`softgrip export` writes `tp1.csv` as .mat and as wide CSV. These programs read the two files:",
+            "`softgrip export` writes the log `tp1.csv` as a .mat file and as a wide CSV file. Three other programs read the two exported files:",
             "",
-            *table(["reader", "values", "largest difference [mm]"],
+            *table(["program that reads the file", "number of values", "largest difference from the log [mm]"],
                    [(reader, count, f"{difference:g}") for reader, count, difference in self.readers])])
 
 

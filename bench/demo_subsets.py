@@ -81,17 +81,17 @@ def page(results, verdicts, real, options, version):
     both = sum(verdict == "cause_found" and real.keys() <= rows.keys() for verdict, rows in zip(verdicts.values(), results.values()))
     lines = [*results_page.head(
                  "The demo's logs, all seven subsets",
-                 f"{both} of {len(results)} combinations of the demo's logs are sufficient for a diagnosis that "
-                 "names the delay and the lag without an alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
+                 f"With {both} of the {len(results)} combinations of the demo's logs, the diagnosis names the transport delay "
+                 "and the valve lag, both without an alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
                  f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
                  "config/models/zhang2025.yaml`"),
-             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that `softgrip diagnose` receives has neither a delay nor a lag. If the logs do not show that there is a lag, the confidence interval of the delay includes the delays estimated with and without a lag.", "",
+             f"The simulated finger of the demo has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that `softgrip diagnose` receives has neither a delay nor a lag. If the logs do not show that the finger has a lag, the confidence interval of the delay contains the delays of two fits: one with and one without a lag.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "
                      f"{cell(rows.get('valve_lag'))} |")
     wrong = complaints(results, real)
-    lines += ["", "Every confidence interval contains the true value, and an additional log never reduces the number of named causes." if not wrong else "Wrong:"]
+    lines += ["", "Every confidence interval in the table contains the true value. An additional log never reduces the number of named causes." if not wrong else "Wrong:"]
     return "\n".join(lines + [f"- {sentence}" for sentence in wrong]) + "\n"
 
 

@@ -116,27 +116,29 @@ def main():
     rows = [
         ("`import softgrip`, wall time and processor time", f"{with_numpy[0]:.3f} and {with_numpy[1]:.3f} s",
          f"less than {MOST_IMPORT_S} s"),
-        ("import without NumPy: elapsed and processor time", f"{without_numpy[0]:.3f} and {without_numpy[1]:.3f} s", f"less than {MOST_IMPORT_S} s"),
+        ("`import softgrip` without NumPy, wall time and processor time", f"{without_numpy[0]:.3f} and {without_numpy[1]:.3f} s", f"less than {MOST_IMPORT_S} s"),
         (f"`Model.simulate()` of {SAMPLES:,} samples from C++", f"{cpp_us:.1f} µs", "-"),
-        ("a simulation of 10,000 samples from Python, compared with C++", f"{python_us:.1f} µs: {overhead:+.1f} %", f"at most {MOST_OVERHEAD_PERCENT} % more")]
+        ("`Model.simulate()` of 10,000 samples from Python", f"{python_us:.1f} µs, {overhead:+.1f} % compared with C++",
+         f"at most {MOST_OVERHEAD_PERCENT} % more than in C++")]
     fits = [(name, f"{seconds:.2f}", f"{found['rmse_mm']:.4f}", *(f"{one:.4f}" for one in found["held_out_rmse_mm"]))
             for name, found, seconds in (("SciPy", scipy, scipy_s), ("`softgrip.identify()`", ours, ours_s))]
     text = "\n".join([
         *results_page.head(
             "Python functions compared with C++ and SciPy",
-            f"A simulation from Python takes {abs(overhead):.1f} % {'more' if overhead > 0 else 'less'} time than from C++. `softgrip.identify()` and SciPy "
-            f"reach equal errors ({ours['rmse_mm']:.4f} and {scipy['rmse_mm']:.4f} mm), and `softgrip.identify()` needs {scipy_s / ours_s:.1f} times less processor time.",
+            f"A simulation takes {abs(overhead):.1f} % {'more' if overhead > 0 else 'less'} time if it is called from Python than if it is called from C++. "
+            f"The fits of `softgrip.identify()` and SciPy have RMS errors of {ours['rmse_mm']:.4f} and {scipy['rmse_mm']:.4f} mm, and `softgrip.identify()` "
+            f"needs {scipy_s / ours_s:.1f} times less processor time than SciPy.",
             study.version, f"bench/python_library.py --runs {args.runs}", f"simulated logs; {results_page.here()}"),
         "| measured | result | required |", "|---|---|---|", *("| " + " | ".join(row) + " |" for row in rows), "",
-        f"The time of the import is the median of {4 * args.runs} processes. The time of a simulation is the shortest of {args.runs * CALLS:,} calls, in",
-        "alternating processes of the two languages. The processes of both languages used a `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the default value, the",
-        "small C++ program returns memory to the system after each call, so the next call takes longer.", "",
+        f"The time of `import softgrip` is the median of {4 * args.runs} processes. The time of a simulation is the shortest time of {args.runs * CALLS:,} calls.",
+        "The benchmark ran processes in C++ and in Python alternately. The processes of both languages used a `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the",
+        "default value of `MALLOC_TRIM_THRESHOLD_`, the C++ program returns memory to the operating system after each call, so its next call takes longer.", "",
         "## Identification", "",
-        "| program | processor time [s] | fitted: tp1 [mm] | held out: steps [mm] | held out: sp2 [mm] |", "|---|---|---|---|---|",
+        "| program | processor time [s] | RMSE on the fitted log tp1 [mm] | RMSE on the held-out log steps [mm] | RMSE on the held-out log sp2 [mm] |", "|---|---|---|---|---|",
         *("| " + " | ".join(row) + " |" for row in fits), "",
-        f"SciPy and softgrip start at the published parameters and at {STARTS - 1} other parameter sets. SciPy's `least_squares` calls a simulator in C",
-        f"(`bench/sysid_peer_simulator.c`) through ctypes. The processor time is that of the complete program on all cores, as the median of {args.runs}",
-        "runs. In the same time, `softgrip.identify()` also computes confidence intervals, warnings and the report.", ""])
+        f"SciPy and softgrip each start the fit from the published parameters and from {STARTS - 1} other parameter sets. SciPy's `least_squares` calls a simulator in C",
+        f"(`bench/sysid_peer_simulator.c`) through ctypes. The processor time is the sum over all cores for the complete program (median of {args.runs}",
+        "runs). The processor time of `softgrip.identify()` also includes the computation of confidence intervals, warnings and the report.", ""])
     args.page.write_text(text)
     print(text)
     met = max(with_numpy[1], without_numpy[1]) < MOST_IMPORT_S and overhead <= MOST_OVERHEAD_PERCENT

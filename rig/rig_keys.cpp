@@ -23,35 +23,40 @@ void declare_rig(RigKeys& keys) {
       {"name", "a name", "", "name of the rig in folders and metrics"},
       required("rate_hz", &RigSettings::rate_hz, {1, 10'000},
                "cycles per second of the control loop and of the bus thread"),
-      {"loop", "map", "none", "[timing of the bus thread](#loop)"},
-      {"faults", "map", "", "[reaction times](#faults)"},
-      {"board", "map", "", "one of `modbus_tcp`, `modbus_rtu`, `iio` and `simulated`"},
+      {"loop", "map", "none", "[time of the exchange with the board in each cycle](#loop)"},
+      {"faults", "map", "", "[times after which an error becomes a fault](#faults)"},
+      {"board", "map", "",
+       "settings of the board: a map with one of the keys `modbus_tcp`, `modbus_rtu`, `iio` and `simulated`"},
       {"plausibility", "map", "none", "[limits of a valid reading](#plausibility), for all channels"},
-      {"model_health", "map", "none", "[residual of a healthy finger](#model_health), for all channels"},
-      {"channel_defaults", "map", "none", "[keys that all channels share](#channel_defaults)"},
+      {"model_health", "map", "none",
+       "[expected model residual of a healthy finger](#model_health), for all channels"},
+      {"channel_defaults", "map", "none", "[keys that apply to all channels](#channel_defaults)"},
       {"channels", "list", "", "1 to 16 [channels](#a-channel)"},
-      {"safety", "map", "", "[actions of the safe states](#safety)"},
+      {"safety", "map", "", "[actions after a stop or a fault](#safety)"},
       {"detection", "map", "", "[detection of a contact](#detection-rest)"},
-      {"rest", "map", "", "[detection of rest](#detection-rest)"},
+      {"rest", "map", "", "[detection that the fingers are at rest](#detection-rest)"},
       {"real_time", "map", "", "[requests to the operating system](#real_time)"},
       {"recorder", "map", "", "[recordings](#recorder)"},
       {"socket", "map", "", "[sockets for clients](#socket)"},
-      {"gpio", "map", "none", "[emergency stop, enable output, lamps, part in position](#gpio)"},
+      {"gpio", "map", "none",
+       "[digital lines: emergency stop, part in position, enable output, lamps](#gpio)"},
   };
-  keys.loop = {required("bus_offset_fraction", &LoopSettings::bus_offset_fraction, {0.01, 0.99},
-                        "start of the exchange with the board, as a fraction of the cycle")};
+  keys.loop = {required(
+      "bus_offset_fraction", &LoopSettings::bus_offset_fraction, {0.01, 0.99},
+      "time from the start of a cycle to the exchange with the board, as a fraction of the cycle time")};
   using control::DetectionSettings;
   keys.detection = {
       required("margin_mm", &DetectionSettings::margin_mm, {0.001, 1000},
-               "distance by which the model of free motion must be ahead of the finger to detect contact"),
+               "contact is detected when the free-motion displacement of the model exceeds the reading by "
+               "this distance"),
       optional("model_rmse_mm", &DetectionSettings::model_rmse_mm, {0, 1000},
-               "RMSE of the model; `margin_mm` must be at least 3 times this value", "none")};
-  keys.rest = {
-      required("band_mm", &RigSettings::rest_band_mm, {0.001, 100},
-               "band in which the readings of a finger must stay for `time_s` if the finger is at rest"),
-      required("time_s", &RigSettings::rest_time_s, {0.001, 600}, "see `band_mm`"),
-      required("timeout_s", &RigSettings::rest_timeout_s, {0.001, 3600},
-               "time after which a start ends with ERROR if the fingers are not at rest")};
+               "RMSE of the model in free motion; `margin_mm` must be at least 3 times this value", "none")};
+  keys.rest = {required("band_mm", &RigSettings::rest_band_mm, {0.001, 100},
+                        "a finger is at rest if its readings stay within a band of this width for `time_s`"),
+               required("time_s", &RigSettings::rest_time_s, {0.001, 600},
+                        "time for which the readings of a finger at rest must stay within `band_mm`"),
+               required("timeout_s", &RigSettings::rest_timeout_s, {0.001, 3600},
+                        "time after a start at which the start ends with ERROR if a finger is not at rest")};
 }
 
 void declare_channel(RigKeys& keys) {
@@ -60,81 +65,90 @@ void declare_channel(RigKeys& keys) {
       {"model", "a path", "", "model file of the finger in free motion, which the controller uses"}};
   keys.channel_parts = {
       {"pid", "map", "", "[settings of the feedback](#pid)"},
-      {"limits", "map", "", "[limits of every command](#limits)"},
-      {"valve", "map", "", "[output for the valve](#valve)"},
-      {"sensor", "map", "", "[input for the displacement sensor](#sensor)"},
+      {"limits", "map", "", "[limits of pressure and displacement](#limits)"},
+      {"valve", "map", "", "[output terminal and scaling of the valve](#valve)"},
+      {"sensor", "map", "", "[input terminal and scaling of the displacement sensor](#sensor)"},
       {"pressure_monitor", "map", "none",
-       "input for the pressure sensor, or for the monitor output of the valve"},
+       "input terminal and scaling of the pressure sensor, or of the monitor output of the valve"},
       {"temperature_sensor", "map", "none",
-       "input for the temperature sensor; the temperature is recorded, but not used"},
+       "input terminal and scaling of the temperature sensor; the daemon records the temperature, but the "
+       "controller does not use it"},
       optional("displacement_used", &control::ChannelSettings::displacement_used, {},
-               "`false`: displacements are recorded, but not used; requires `pressure_monitor`"),
+               "`false`: the daemon records the displacement readings, but does not use them; requires "
+               "`pressure_monitor`"),
       {"plausibility", "map", "map of the rig", "[limits of a valid reading](#plausibility)"},
-      {"model_health", "map", "map of the rig", "[residual of a healthy finger](#model_health)"},
+      {"model_health", "map", "map of the rig",
+       "[expected model residual of a healthy finger](#model_health)"},
   };
   using control::FeedforwardSettings;
-  keys.feedforward = {required("feedforward", &FeedforwardSettings::kind, control::feedforward_names,
-                               "kind of inverse of the model with which the command is computed"),
-                      optional("extra_latency_s", &FeedforwardSettings::extra_latency_s, {0, 1},
-                               "delay between a command and the output of the board, in addition to the "
-                               "delays of the valve blocks of the model",
-                               "`bus_offset_fraction` of a cycle")};
+  keys.feedforward = {
+      required("feedforward", &FeedforwardSettings::kind, control::feedforward_names,
+               "method with which the feedforward computes the commanded pressure from the model"),
+      optional("extra_latency_s", &FeedforwardSettings::extra_latency_s, {0, 1},
+               "delay from the computation of a command to the output of the board, in addition to the "
+               "delays of the valve blocks in the model",
+               "`bus_offset_fraction` of a cycle")};
   using Limits = control::LimitSettings;
   keys.rest_pressure = {optional(
       "rest_kpa", &Limits::rest_kpa, any_pressure_kpa,
       "[pressure of every safe state](#rest_kpa), between `pressure_min_kpa` and `pressure_max_kpa`")};
   keys.limits = {required("pressure_min_kpa", &Limits::pressure_min_kpa, any_pressure_kpa,
-                          "smallest permitted pressure command"),
+                          "smallest permitted commanded pressure"),
                  required("pressure_max_kpa", &Limits::pressure_max_kpa, any_pressure_kpa,
-                          "largest permitted pressure command"),
+                          "largest permitted commanded pressure"),
                  required("slew_up_kpa_per_s", &Limits::slew_up_kpa_per_s, {0.001, 1e6},
-                          "largest rate at which the pressure command may increase"),
+                          "largest rate at which the commanded pressure may increase"),
                  required("slew_down_kpa_per_s", &Limits::slew_down_kpa_per_s, {0.001, 1e6},
-                          "largest rate at which the pressure command may decrease"),
+                          "largest rate at which the commanded pressure may decrease"),
                  required("displacement_min_mm", &Limits::displacement_min_mm, any_displacement_mm,
-                          "smallest permitted reference of the displacement"),
+                          "smallest displacement that may be commanded"),
                  required("displacement_max_mm", &Limits::displacement_max_mm, any_displacement_mm,
-                          "largest permitted reference of the displacement"),
+                          "largest displacement that may be commanded"),
                  required("displacement_margin_mm", &Limits::displacement_margin_mm, {0, 1000},
                           "distance beyond the displacement limits at which a reading causes a fault")};
   using Pid = control::PidSettings;
-  keys.pid = {required("kp_kpa_per_mm", &Pid::kp_kpa_per_mm, {0, 1e6}, "proportional gain"),
-              required("ki_kpa_per_mm_s", &Pid::ki_kpa_per_mm_s, {0, 1e6}, "integral gain"),
-              required("kd_kpa_s_per_mm", &Pid::kd_kpa_s_per_mm, {0, 1e6}, "derivative gain"),
-              required("derivative_filter_s", &Pid::derivative_filter_s, {0, 100},
-                       "time constant of the derivative filter"),
-              required("setpoint_weight", &Pid::setpoint_weight, {0, 1},
-                       "weight of the reference in the proportional term"),
-              required("anti_windup", &Pid::anti_windup, control::anti_windup_names,
-                       "method against integrator windup"),
-              optional("tracking_time_s", &Pid::tracking_time_s, {1e-4, 1000},
-                       "time constant of the back-calculation; required with `back_calculation`")};
+  keys.pid = {
+      required("kp_kpa_per_mm", &Pid::kp_kpa_per_mm, {0, 1e6}, "proportional gain"),
+      required("ki_kpa_per_mm_s", &Pid::ki_kpa_per_mm_s, {0, 1e6}, "integral gain"),
+      required("kd_kpa_s_per_mm", &Pid::kd_kpa_s_per_mm, {0, 1e6}, "derivative gain"),
+      required("derivative_filter_s", &Pid::derivative_filter_s, {0, 100},
+               "time constant of the derivative filter"),
+      required("setpoint_weight", &Pid::setpoint_weight, {0, 1},
+               "weight of the reference in the proportional term of the controller"),
+      required("anti_windup", &Pid::anti_windup, control::anti_windup_names,
+               "method that prevents integrator windup"),
+      optional("tracking_time_s", &Pid::tracking_time_s, {1e-4, 1000},
+               "time constant of the back-calculation; required with `anti_windup: back_calculation`")};
 }
 
 void declare_wiring(RigKeys& keys) {
   keys.output = {
-      {"output", "0 to 255", "", "number of the output terminal; a terminal may be used only once"},
-      {"module", "a name", "the only module with outputs", "name of the module that has the terminal"},
+      {"output", "0 to 255", "", "number of the output terminal; each terminal may be used only once"},
+      {"module", "a name", "the only module with outputs", "name of the module of this terminal"},
       {"at_v", "two numbers", "",
-       "two signals at the terminal; write `at_ma` or `at_kpa` if the unit of the terminal is mA or kPa"},
+       "signals at the terminal at the two calibration points; write `at_ma` or `at_kpa` if the unit of the "
+       "terminal is mA or kPa"},
       {"is_kpa", "two numbers", "",
-       "the two pressures at the two signals of `at_v`; the slope may be negative"},
-      {"range_kpa", "two numbers", "", "lowest and highest pressure that the valve controls"}};
+       "pressures at the two calibration points; the second pressure may be lower than the first"},
+      {"range_kpa", "two numbers", "", "lowest and highest pressure that the valve can control"}};
   keys.input = {
-      {"input", "0 to 255", "", "number of the input terminal; a terminal may be used only once"},
-      {"module", "a name", "the only module with inputs", "name of the module that has the terminal"},
+      {"input", "0 to 255", "", "number of the input terminal; each terminal may be used only once"},
+      {"module", "a name", "the only module with inputs", "name of the module of this terminal"},
       {"at_v", "two numbers", "",
-       "two signals at the terminal; write `at_ma` or `at_kpa` if the unit of the terminal is mA or kPa"},
+       "signals at the terminal at the two calibration points; write `at_ma` or `at_kpa` if the unit of the "
+       "terminal is mA or kPa"},
       {"is_mm", "two numbers", "",
-       "the two displacements at the two signals of `at_v`; the slope may be negative"},
+       "displacements at the two calibration points; the second displacement may be smaller than the first"},
       {"valid_v", "two numbers", "",
-       "lowest and highest signal of a valid reading; `valid_ma` or `valid_kpa` if the terminal is in mA or "
-       "kPa"},
+       "lowest and highest signal of a valid reading; write `valid_ma` or `valid_kpa` if the unit of the "
+       "terminal is mA or kPa"},
       {"error_codes", "list", "none", "signals with which the sensor reports that it cannot measure"}};
-  keys.valve = {required("on_power_loss", &ValveFacts::on_power_loss, power_loss_names,
-                         "behaviour of the valve without electrical power"),
-                optional("on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
-                         "pressure to which a valve with `on_power_loss: vents` goes without power")};
+  keys.valve = {
+      required("on_power_loss", &ValveFacts::on_power_loss, power_loss_names,
+               "reaction of the valve to a loss of electrical power: it vents, or it holds the pressure"),
+      optional(
+          "on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
+          "pressure to which a valve with `on_power_loss: vents` goes after a loss of electrical power")};
 }
 
 /// Reads `overrun_cycles`, whose deprecated name is `slipped_cycles`.
@@ -152,7 +166,8 @@ void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultS
 
 void declare_safety(RigKeys& keys) {
   keys.safety = {{"safe_action", "map", "",
-                  "safe action, `vent` or `hold`, for each phase: `idle`, `closing`, `holding`, `releasing`"},
+                  "map with the safe action, `vent` or `hold`, of each phase: `idle`, `closing`, `holding` "
+                  "and `releasing`"},
                  required("on_emergency_stop", &control::SafetySettings::on_emergency_stop,
                           control::safe_action_names, "action after an emergency stop")};
   keys.commands = {
@@ -164,21 +179,25 @@ void declare_safety(RigKeys& keys) {
   using Fault = control::FaultSettings;
   keys.faults = {
       required("bus_down_cycles", &Fault::bus_down_cycles, cycles,
-               "number of cycles without a successful exchange with the board after which the fault occurs"),
-      required("invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles,
-               "number of cycles with an invalid reading after which the fault occurs"),
-      required("displacement_cycles", &Fault::displacement_cycles, cycles,
-               "number of cycles with a displacement outside its limits after which the fault occurs"),
-      required("readback_cycles", &Fault::readback_cycles, cycles,
-               "number of cycles with an output that differs from the commands after which the fault occurs"),
+               "number of consecutive cycles without a successful exchange with the board after which a bus "
+               "fault (F1xx) occurs"),
       required(
-          "readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
-          "largest permitted difference between the output and the commands of the last `readback_delay_s`"),
+          "invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles,
+          "number of consecutive cycles with an invalid displacement reading after which F201 to F205 occur"),
+      required("displacement_cycles", &Fault::displacement_cycles, cycles,
+               "number of consecutive cycles with a displacement outside its limits after which F206 occurs"),
+      required("readback_cycles", &Fault::readback_cycles, cycles,
+               "number of consecutive cycles with a read-back output that differs from the commands after "
+               "which F301 occurs"),
+      required("readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
+               "largest permitted difference between the read-back output and the commands of the last "
+               "`readback_delay_s`"),
       required("readback_delay_s", &Fault::readback_delay_s, {0, 10},
-               "period before each comparison; the output is compared with every command of this period"),
+               "period before each comparison; the read-back output is compared with every command of this "
+               "period"),
       optional("pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
-               "number of cycles with a measured pressure that differs from the commands after which the "
-               "fault occurs; 0: no comparison"),
+               "number of consecutive cycles with a measured pressure that differs from the commands after "
+               "which F207 occurs; 0: no comparison"),
       optional("pressure_tolerance_kpa", &Fault::pressure_tolerance_kpa, {0.001, 1000},
                "largest permitted difference between the measured pressure and the commands of the last "
                "`pressure_delay_s`",
@@ -188,11 +207,11 @@ void declare_safety(RigKeys& keys) {
                "period",
                "none"),
       {{"overrun_cycles", "0 to 100000", "",
-        "number of consecutive missed cycles of the control loop after which the fault occurs; 0: missed "
-        "cycles never cause a fault"},
+        "number of consecutive missed cycles of the control loop after which F901 occurs; 0: missed cycles "
+        "alone never cause F901"},
        read_overrun_cycles},
       required("model_unfit_is_fault", &Fault::model_unfit_is_fault, {},
-               "`true`: a model that does not fit the readings causes a fault"),
+               "`true`: a model that does not fit the readings causes the fault F401"),
       optional("unsteady_is_fault", &Fault::unsteady_is_fault, {},
                "`true`: readings that jump back and forth cause the fault F204; `false`: such readings cause "
                "only an event")};
@@ -201,22 +220,22 @@ void declare_safety(RigKeys& keys) {
 void declare_monitoring(RigKeys& keys) {
   using Check = control::PlausibilitySettings;
   keys.plausibility = {
-      required("max_age_s", &Check::max_age_s, {1e-4, 60}, "age above which a reading is stale"),
+      required("max_age_s", &Check::max_age_s, {1e-4, 60}, "age above which a reading is stale (not valid)"),
       required("max_speed_mm_per_s", &Check::max_speed_mm_per_s, {0.001, 1e6},
-               "largest plausible speed of a finger; a reading that changes faster is a jump"),
+               "largest plausible speed of a finger; a faster change of the reading is a jump"),
       required("jump_margin_mm", &Check::jump_margin_mm, {0, 1000},
-               "change of a reading that never counts as a jump, because noise can cause it"),
+               "largest change of a reading that noise can cause; such a change is never a jump"),
       required("frozen_after_s", &Check::frozen_after_s, {0.001, 3600},
-               "time for which a reading must be constant, while the command changes, to count as frozen"),
+               "time after which a constant reading is frozen if the command has changed"),
       required("frozen_band_mm", &Check::frozen_band_mm, {0, 1000},
-               "largest change of a reading that counts as constant"),
+               "largest change of a reading that is regarded as constant"),
       required("frozen_command_kpa", &Check::frozen_command_kpa, {0.001, 10'000},
-               "smallest change of the command at which a constant reading counts as frozen"),
-      optional(
-          "jump_mm", &Check::jump_mm, {0.001, 1000},
-          "smallest jump of a reading; the jump is the change of the reading minus the change of the model"),
+               "smallest change of the commanded pressure at which a constant reading is regarded as frozen"),
+      optional("jump_mm", &Check::jump_mm, {0.001, 1000},
+               "smallest jump of a reading; the size of a jump is the change of the reading minus the change "
+               "of the model output"),
       optional("unsteady_jumps", &Check::unsteady_jumps, {2, control::most_unsteady_jumps},
-               "number of jumps back and forth within 1 s at which the sensor counts as unsteady")};
+               "number of jumps back and forth within 1 s at which the sensor is regarded as unsteady")};
   using Health = control::ModelHealthSettings;
   keys.model_health = {
       required("model_error_mm", &Health::model_error_mm, {1e-6, 1000},
@@ -225,26 +244,30 @@ void declare_monitoring(RigKeys& keys) {
                "correlation time of the model error"),
       required("noise_mm", &Health::noise_mm, {1e-6, 1000}, "standard deviation of the noise of a reading"),
       required("unfit_mm", &Health::unfit_mm, {1e-6, 1000},
-               "RMS of the residual over `unfit_window_s` above which the model is unfit"),
+               "the model is unfit if the RMS of its residual over `unfit_window_s` exceeds this value"),
       optional("interval_s", &Health::interval_s, {1e-6, 3600},
-               "time over which each value of the residual is averaged"),
-      optional("allowance_sigma", &Health::allowance_sigma, {1e-6, 100},
-               "half of the smallest detected shift of the residual, in standard deviations"),
+               "time over which the residual is averaged for each value of the test"),
+      optional(
+          "allowance_sigma", &Health::allowance_sigma, {1e-6, 100},
+          "half of the smallest shift of the residual that the test must detect, in standard deviations"),
       optional("false_alarm_interval_s", &Health::false_alarm_interval_s, {1e-6, 1e12},
-               "mean time between false alarms of a healthy model"),
-      optional("unfit_window_s", &Health::unfit_window_s, {1e-6, 3600}, "see `unfit_mm`")};
+               "mean time between two false alarms of a healthy model"),
+      optional("unfit_window_s", &Health::unfit_window_s, {1e-6, 3600},
+               "time over which the RMS for `unfit_mm` is computed")};
 }
 
 void declare_service(RigKeys& keys) {
   using RealTime = RealTimeSettings;
   keys.real_time = {
       required("required", &RealTime::required, {},
-               "`true`: softgripd does not start if one of these settings is not available"),
+               "`true`: softgripd does not start if the operating system does not grant one of the settings "
+               "in `real_time`"),
       required("priority", &RealTime::priority, {0, 80},
                "SCHED_FIFO priority of the control loop; 0: default scheduling of Linux"),
-      required("lock_memory", &RealTime::lock_memory, {}, "`true`: lock and prefault the daemon's memory"),
+      required("lock_memory", &RealTime::lock_memory, {},
+               "`true`: softgripd locks its memory in RAM and prefaults it"),
       {"cpus", "list", "",
-       "processors on which the control loop and the bus thread run; `[]`: all processors"},
+       "numbers of the processors on which the control loop and the bus thread run; `[]`: all processors"},
       optional("cpu_dma_latency_us", &RealTime::cpu_dma_latency_us, {0, 1'000'000},
                "longest permitted wake-up time of a processor from a sleep state"),
       optional("prefault_stack_bytes", &RealTime::prefault_stack_bytes, {0, 4 << 20},
@@ -253,31 +276,32 @@ void declare_service(RigKeys& keys) {
                "size of the prefaulted heap")};
   using Recorder = RecorderSettings;
   keys.recorder = {
-      required("mode", &Recorder::mode, recorder_mode_names, "periods that are recorded"),
+      required("mode", &Recorder::mode, recorder_mode_names, "periods that the daemon records"),
       required("directory", &Recorder::directory, {}, "folder of the recordings"),
-      optional("decimation", &Recorder::decimation, {1, 10'000}, "number of cycles per row of the recording"),
+      optional("decimation", &Recorder::decimation, {1, 10'000},
+               "number of cycles of the control loop per row of the recording"),
       optional("flush_interval_s", &Recorder::flush_interval_s, {0.001, 0.5},
-               "largest part of a recording that can be lost after `kill -9`, as a duration"),
+               "longest period that a recording can lose after `kill -9`"),
       optional("sync_interval_s", &Recorder::sync_interval_s, {0, 3600},
-               "largest part of a recording that can be lost after a power failure, as a duration; 0: the "
-               "kernel decides when it writes to the disk"),
+               "longest period that a recording can lose after a power failure; 0: the operating system "
+               "decides when it writes to the disk"),
       optional("history_s", &Recorder::history_s, {0, 60},
-               "time before the start of a recording that the recording also contains")};
+               "length of the period before the start or the fault that a recording also contains")};
   keys.look = {
       required("path", &SocketFile::path, {}, "path of the Unix domain socket, at most 107 bytes"),
-      {"mode", "a text", "", "permissions of the socket, such as `rw-rw----` or `\"0660\"`"},
+      {"mode", "a text", "", "permissions of the socket's file, such as `rw-rw----` or `\"0660\"`"},
       optional("group", &SocketFile::group, {}, "group of the socket's file", "group of the daemon")};
   using Socket = SocketSettings;
   const Keys<Socket> own{
       {"look", "map", "none", "a second, read-only socket with the keys `path`, `mode` and `group`"},
       required("sequence_directory", &Socket::sequence_directory, {},
-               "folder of the sequences that clients can start by name"),
+               "folder of the sequences that clients can start by their names"),
       optional("max_clients", &Socket::max_clients, {1, 1000},
                "largest number of clients on each of the two sockets"),
       optional("max_line_bytes", &Socket::max_line_bytes, {256, 1 << 20},
                "length of the longest line that a client may send"),
       optional("max_queue_bytes", &Socket::max_queue_bytes, {4096, 64 << 20},
-               "largest total size of the responses that a client has not read yet")};
+               "largest total size of the responses that wait for one client")};
   keys.socket.assign(keys.look.begin(), keys.look.end());
   keys.socket.insert(keys.socket.end(), own.begin(), own.end());
 }

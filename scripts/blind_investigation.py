@@ -51,28 +51,28 @@ def page(results, command, version):
     open_still = [r for r in asked if r["outcome"] == "ambiguous_right"]
     twins = [r for r in open_still if is_indistinguishable(r)]
     others = [r for r in asked if r not in resolved and r not in wrong and r not in open_still]
-    meaning = (f"Further experiments and a gauge check resolve {len(resolved)} of {len(asked)} ambiguous diagnoses of simulated "
-               f"fingers to the true cause, and {len(wrong)} to a wrong cause.")
+    meaning = (f"For {len(resolved)} of {len(asked)} ambiguous diagnoses of simulated fingers, `softgrip investigate` finds the true cause by "
+               f"further experiments or a gauge check. In {len(wrong)} cases, `softgrip investigate` finds a wrong cause.")
     lines = [*results_page.head("Blind investigations", meaning, version, command,
                                 f"{sum(not r['poor'] for r in results)} ambiguous cases of the campaign and "
                                 f"{sum(r['poor'] for r in results)} cases with a single log of triangles"),
-             f"In {len(asked)} cases, the first diagnosis was ambiguous and listed the true cause. `softgrip investigate` was run on these cases with the simulated finger in place of a rig. The gauge check of the sensor was also simulated. The position of the sensor's target has "
-             "an error of 0.01 mm (standard deviation). Each reading is the mean over 2 s, and has the noise, quantisation, drift, disturbances and wrong samples of the simulated case.", "",
-             "| ambiguous verdicts | cases, with the 95 % interval of their share |",
+             f"In {len(asked)} cases, the first diagnosis was ambiguous and listed the true cause. For each of the {len(asked)} cases, `softgrip investigate` was run with the simulated finger in place of a rig. The gauge check of the sensor was also simulated. In the simulated gauge check, the position of the sensor's target has "
+             "an error of 0.01 mm (standard deviation). Each reading of the gauge check is the mean over 2 s, and has the noise, quantisation, drift, disturbances and wrong samples of the simulated case.", "",
+             "| result of `softgrip investigate` for a case with an ambiguous first diagnosis | number of cases, and percentage with its 95 % interval |",
              "|---|---|",
-             f"| resolved to the true cause | {share(resolved, asked)} |",
-             f"| of the resolved verdicts: resolved by an experiment with a waveform | {len(resolved) - len(by_gauge)} |",
-             f"| of the resolved verdicts: resolved by the gauge check | {len(by_gauge)} |",
-             f"| resolved to a wrong cause | {share(wrong, asked)} |",
-             f"| still ambiguous, with the true cause listed | {len(open_still)} |",
-             f"| of the ambiguous verdicts: no command and no gauge can separate the causes (lags of valve and sensor) | {len(twins)} |",
+             f"| `investigate` finds the true cause | {share(resolved, asked)} |",
+             f"| `investigate` finds the true cause by an experiment with a waveform | {len(resolved) - len(by_gauge)} |",
+             f"| `investigate` finds the true cause by the gauge check | {len(by_gauge)} |",
+             f"| `investigate` finds a wrong cause | {share(wrong, asked)} |",
+             f"| the last diagnosis is ambiguous and lists the true cause | {len(open_still)} |",
+             f"| the last diagnosis is ambiguous, because no experiment and no gauge check can separate the causes (lags of valve and sensor) | {len(twins)} |",
              f"| all other results of an investigation (verdict `unexplained` or `partly_explained`, or a failed run) | {len(others)} |", ""]
-    for title, chosen in (("the campaign's", [r for r in asked if not r["poor"]]),
-                          ("one log of triangles", [r for r in asked if r["poor"]])):
+    for title, chosen in (("cases of the campaign", [r for r in asked if not r["poor"]]),
+                          ("cases with one log of triangles", [r for r in asked if r["poor"]])):
         if chosen:
-            lines += [f"Of {title} ambiguous verdicts, "
-                      f"{share([r for r in chosen if r['outcome'] == 'right'], chosen)}, are resolved to the true cause.", ""]
-    lines += ["| hidden | strength | seed | logs | ambiguous among | after | experiments | rig time [min] | outcome |",
+            lines += [f"For {title}, `investigate` finds the true cause in "
+                      f"{share([r for r in chosen if r['outcome'] == 'right'], chosen)}.", ""]
+    lines += ["| hidden cause | strength | seed | logs | causes of the first diagnosis | causes of the last diagnosis | experiments | rig time [min] | outcome |",
               "|---|---|---|---|---|---|---|---|---|"]
     for r in sorted(asked, key=lambda r: (r["poor"], r["causes"], -r["strength"], r["seed"])):
         before = "; ".join(" or ".join(one) for one in r.get("rivals", []))
@@ -81,7 +81,7 @@ def page(results, command, version):
                      f"{'triangles' if r['poor'] else 'three'} | {before} | {after} | "
                      f"{', '.join(r.get('played', [])) or '-'} | {r.get('minutes', 0):.1f} | {r['outcome']} |")
     counts = collections.Counter(r["before"] for r in results if "before" in r)
-    lines += ["", "Outcomes of the first diagnoses: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
+    lines += ["", "Number of first diagnoses for each outcome: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
     return "\n".join(lines) + "\n"
 
 

@@ -72,16 +72,16 @@ def summary(results):
         among = [r for r in singles if r["strength"] == strength]
         row(f"true cause named, or listed in an ambiguous verdict, at strength {strength}", target, among, "right",
             "ambiguous_right")
-        row(f"of these, true cause named alone, at strength {strength}", "-", among, "right")
+        row(f"true cause named without alternatives, at strength {strength}", "-", among, "right")
         row(f"wrong cause named, at strength {strength}", "at most 2 %", among, "wrong")
     row("cases without an effect: a cause is named (false alarms)", "at most 2 %", clean, "wrong")
     row("cases without an effect: an unexplained error is reported", "-", clean, "unexplained")
-    row("effects outside the library: a cause of the library is named", "at most 5 %", outside, "wrong")
-    row("effects outside the library: reported as unexplained", "-", outside, "right")
-    row("two effects: both found", "at least 80 %", pairs, "right", "ambiguous_right")
+    row("effects that softgrip does not model: a cause is named", "at most 5 %", outside, "wrong")
+    row("effects that softgrip does not model: reported as unexplained", "-", outside, "right")
+    row("cases with two effects: both effects are found", "at least 80 %", pairs, "right", "ambiguous_right")
     held = [(r["seed"], value) for r in results if r["outcome"] == "right" for value in r.get("covered", {}).values()]
     if held:
-        rows.append(("95 % intervals of parameters that contain the true value, right verdicts", "90 to 98 %",
+        rows.append(("95 % intervals of parameters that contain the true value, in cases with the outcome *right*", "90 to 98 %",
                      interval_by_seed(held), len(held)))
     return rows
 
@@ -183,7 +183,7 @@ def detection_limits(results):
 
 
 def table(results):
-    lines = ["| hidden | strength | cases | right | ambiguous, true cause listed | partly | missed | wrong | named instead |",
+    lines = ["| hidden cause | strength | number of cases | right | ambiguous, true cause listed | partly | missed | wrong | causes that are named instead |",
              "|---|---|---|---|---|---|---|---|---|"]
     for (name, strength), rows in by_group(results):
         count = collections.Counter(r["outcome"] for r in rows)
@@ -197,10 +197,10 @@ def table(results):
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in rows}
     found = [measured.get(f"true cause named, or listed in an ambiguous verdict, at strength {strength}", "-") for strength in (8, 2)]
-    return (f"If a hidden effect causes an error of 8 times the sensor noise in a simulated finger, the diagnosis names or lists the "
-            f"true cause in {found[0]} of the cases, and in {found[1]} at 2 times the noise. If the effect is not in the library of "
-            f"causes, the diagnosis names a cause of the library in "
-            f"{measured.get('effects outside the library: a cause of the library is named', '-')} of the cases.")
+    return (f"If a hidden effect in a simulated finger causes an error of 8 times the sensor noise, the diagnosis names or lists the "
+            f"true cause in {found[0]} of the cases. With an error of 2 times the sensor noise, it names or lists the true cause in "
+            f"{found[1]} of the cases. If softgrip does not model the effect, the diagnosis wrongly names a cause in "
+            f"{measured.get('effects that softgrip does not model: a cause is named', '-')} of the cases.")
 
 
 def write(path, results, planned, command, variation, version):
@@ -214,16 +214,17 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these logs and a model of the finger without the effect. The parameters of this model deviate from the parameters of the simulated finger by a few per cent. The strength of an effect is computed from the displacement change that the effect causes. The part of this change that a refit of the model parameters can explain is removed. The strength is the RMS of the remaining change, divided by the sensor noise (0.04 mm).",
-             "", variation, "", "| measure | target | measured (95 % interval) | cases |", "|---|---|---|---|"]
+             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads the logs and a model of the finger without the effect. The parameters of the model deviate from the parameters of the simulated finger by a few per cent. The strength of an effect is the RMS of the displacement change that the effect causes, divided by the sensor noise (0.04 mm). The part of the displacement change that a refit of the model parameters can explain is subtracted before the RMS is computed.",
+             "", variation, "", "| measure | target | measured (95 % interval) | number of cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
-    lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "
-              f"{unreachable} cases, the effect cannot physically reach the required strength and has its largest possible size.",
+    lines += ["", f"The median wall time of a diagnosis of three logs of 8,000 samples was {statistics.median(walls):.1f} s. In "
+              f"{unreachable} cases, the effect cannot physically reach the required strength, and has its largest possible size.",
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
               f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause is counted as found if it is named alone or is listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
-              "Columns of the table: a result is *right* if only the true cause is named. In a case without an effect, a result is right if no cause is named and no error remains unexplained. "
-              "For an effect outside the library, a result is right if the verdict is `unexplained`. A result is *missed* if no cause is named although the finger has an effect. A result is *wrong* "
-              "if a cause that is not present is named, alone or together with the true cause."]
+              "An outcome is *right* if only the true cause is named. In a case without an effect (*clean*), an outcome is right if no cause is named and no error remains unexplained. "
+              "In a case with an effect that softgrip does not model (*outside*), an outcome is right if the verdict is `unexplained`. An outcome is *partly* right if only some of several "
+              "true causes are named. An outcome is *missed* if no cause is named although the finger has an effect. An outcome is *wrong* if a cause is named that the finger does not have, "
+              "alone or together with the true cause."]
     path.write_text("\n".join(lines) + "\n")

@@ -98,8 +98,8 @@ def meaning(changed, still):
         return interval(sum(r["outcome"] in good for r in among), len(among)).split(" (")[0]
 
     first = [share([r for r in changed if r["strength"] == strength], ("first",)) for strength in (1, 0.15)]
-    return (f"If a simulated finger has changed since its healthy logs, the diagnosis names the true cause first in {first[0]} of the "
-            f"cases at strength 1, and in {first[1]} at strength 0.15. The diagnosis reports {share(still, ('unchanged',))} of the unchanged fingers "
+    return (f"For simulated fingers that have changed since their healthy logs, the diagnosis names the true cause first in {first[0]} of the "
+            f"cases with strength 1, and in {first[1]} of the cases with strength 0.15. The diagnosis reports {share(still, ('unchanged',))} of the unchanged fingers "
             "as unchanged.")
 
 
@@ -109,11 +109,11 @@ def page(rows, command, planned, variation, version):
     still = [r for r in rows if r["cause"] == "none" and r["outcome"] != "failed"]
     failed = sum(r["outcome"] == "failed" for r in rows)
     lines = [*results_page.head("Campaign of changed fingers", meaning(changed, still), version, command,
-                                f"{len(rows)} simulated cases of {planned} planned, {failed} of them failed. The campaign was stopped before its end, so these cases are a random sample of the plan."),
-             *changing_text(), "", variation, "", "| measure | wanted | measured (95 % interval) | cases |", "|---|---|---|---|"]
+                                f"{len(rows)} of {planned} planned cases were simulated, and {failed} of these cases failed. The campaign was stopped before its end, so the simulated cases are a random sample of the planned cases."),
+             *changing_text(), "", variation, "", "| measure | required | measured (95 % interval) | number of cases |", "|---|---|---|---|"]
     for strength, wanted in ((0.15, 90), (1, 97)):
         own = [r for r in changed if r["strength"] == strength]
-        for name, good in (("true cause named first", ("first",)), ("named first, or its `twin`", ("first", "twin")),
+        for name, good in (("true cause named first", ("first",)), ("true cause named first, or outcome `twin`", ("first", "twin")),
                            ("true cause named or listed", ("first", "twin", "listed"))):
             lines.append(f"| strength {strength}: {name} | {f'at least {wanted} %' if len(good) == 1 else '-'} | "
                          f"{interval(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
@@ -129,7 +129,7 @@ def page(rows, command, planned, variation, version):
     lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
               *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
               "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## Cases without the true cause named first", "",
-              "| hidden | strength | family | columns | seed | outcome | verdict | named |", "|---|---|---|---|---|---|---|---|"]
+              "| hidden cause | strength | family | columns | seed | outcome | verdict | named causes |", "|---|---|---|---|---|---|---|---|"]
     for row in sorted((r for r in changed + still if r["outcome"] not in ("first", "unchanged")), key=lambda r: r["cause"]):
         lines.append(f"| {row['cause']} | {row['strength']} | {row['family']} | {row['columns']} | {row['seed']} | "
                      f"{row['outcome']} | {row['verdict']} | {', '.join(row['named'])} |")
@@ -138,12 +138,22 @@ def page(rows, command, planned, variation, version):
 
 def changing_text():
     return [
-        "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs if the table states no other number) are simulated without a hidden cause. The later logs (campaign 1) have different",
-        "waveforms and different noise, and contain one hidden cause or no cause. The excess error of a change is the RMS of the displacement change that a refit of the model cannot absorb. At strength 1, the excess error is 8 times the sensor noise of 0.04 mm. The pages of the other campaigns call this excess error strength 8. At strength 0.15, the excess error is 0.048 mm.",
-        "The zero offset of the sensor and the temperature differ between the healthy and the later logs. The outcomes are: `first`: the true cause is named first.",
-        "`twin`: stiffening is named although the sensor scale is nonlinear, or a nonlinear sensor scale is named although the finger stiffens. `listed`: the true cause is named after a wrong cause,",
-        "or is listed as an alternative. `unnamed`: a change is reported, but no cause is named. `missed`: the finger is reported as unchanged. `wrong`: only a wrong cause is named. The coverage of the intervals is computed for changes whose true cause",
-        "is named first, and for parameters that have the same meaning in the simulation and in the result. The valve that is simulated in the textbook family and the regulator in the models of softgrip use the same equations (ISO 6358, a controller with integral action). The textbook cases therefore do not show the performance on a valve that does not follow ISO 6358."]
+        "In each case, the healthy logs of a finger are simulated without a hidden cause. The number of healthy logs per finger is 3, if a",
+        "table of this page states no other number. The later logs of the finger have different waveforms and different noise than the",
+        "healthy logs, and contain one hidden cause or no cause. The excess error of a change is the RMS of the displacement change that a",
+        "refit of the model cannot absorb. With strength 1, the excess error is 0.32 mm, which is 8 times the sensor noise of 0.04 mm. The",
+        "pages of the other campaigns call this excess error strength 8. With strength 0.15, the excess error is 0.048 mm. The zero offset",
+        "of the sensor and the temperature are not equal in the healthy and in the later logs. The outcome `first` means that the true",
+        "cause is named first. The outcome `twin` means that stiffening is named although the sensor scale is nonlinear, or that a",
+        "nonlinear sensor scale is named although the finger stiffens. The outcome `listed` means that the true cause is named after a",
+        "wrong cause, or is listed as an alternative. The outcome `unnamed` means that a change is reported, but no cause is named. The",
+        "outcome `missed` means that the finger is reported as unchanged. The outcome `wrong` means that only a wrong cause is named. The",
+        "coverage of the confidence intervals is computed for changes whose true cause is named first, and for parameters that have the",
+        "same meaning in the simulation and in the result. The cases of the family `first` are simulated as in the [blind",
+        "campaign](blind-campaign.md), and the cases of the family `textbook` as in the [textbook campaign](textbook-campaign.md). The",
+        "simulated valve of the family `textbook` and the pressure regulator in the models of softgrip use the same equations (ISO 6358, a",
+        "controller with integral action). The cases of the family `textbook` therefore do not show the performance on a valve that does",
+        "not follow ISO 6358."]
 
 
 def main():

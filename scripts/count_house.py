@@ -113,15 +113,15 @@ def count(root):
     large = sorted(name for name in lines if lines[name] > LARGE)
     biggest, files = rooms.most_common(1)[0]
     return [
-        ("lines of source code without tests", sum(lines.values()), []),
-        ("lines of source code without tests that contain only a comment", sum(len(re.findall(r"^\s*//", text, re.MULTILINE)) for text in sources.values()), []),
-        ("files", len(sources), []),
+        ("lines in source files outside the tests", sum(lines.values()), []),
+        ("lines with only a comment in source files outside the tests", sum(len(re.findall(r"^\s*//", text, re.MULTILINE)) for text in sources.values()), []),
+        ("source files outside the tests", len(sources), []),
         ("folders with sources", len(rooms), []),
         ("number of files in the largest folder", f"{files} (`{biggest}`)", [f"{one}: {n}" for one, n in rooms.most_common(8)]),
-        (f"files below {SMALL} lines", len(small), small),
-        (f"files above {LARGE} lines", len(large), [f"{one}: {lines[one]}" for one in large]),
-        ("includes between folders", len(crossing), []),
-        ("allowed dependencies between folders", len(arrows), []),
+        (f"files with fewer than {SMALL} lines", len(small), small),
+        (f"files with more than {LARGE} lines", len(large), [f"{one}: {lines[one]}" for one in large]),
+        ("include directives that name a file of a different folder", len(crossing), []),
+        ("permitted dependencies of a folder on a different folder", len(arrows), []),
         ("pairs of folders that include each other", len(circles), [f"{one} <-> {other}" for one, other in circles]),
         ("pairs of top folders that include each other", len(mutual({one for one in floors if one[0] != one[1]})), []),
         ("files that contain the name of a block and do not define this block", len({name for name, _ in names}), [f"{name}: {one}" for name, one in names]),

@@ -25,8 +25,8 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 
 ZONES = (("4 to 8 mm nearer than expected", -8, -4), ("0 to 4 mm nearer than expected", -4, 0), ("0 to 4 mm farther than expected", 0, 4),
          ("4 to 8 mm farther than expected", 4, 8.001))
-SLIPPED = "pulled out when held"
-HEAD = ("part", "where", "fingers", "grips", "largest gripping pressure, median and maximum [kPa]", "results",
+SLIPPED = "part removed while it is held"
+HEAD = ("part", "position of the part", "number of fingers", "number of grips", "largest gripping pressure, median and maximum [kPa]", "results",
         "time to the result, median and maximum [s]")
 
 
@@ -50,7 +50,7 @@ def key_of(trial, judged):
     if judged.slipped:
         return trial.part.name, SLIPPED, trial.fingers
     if trial.part is None:
-        return "nothing", "-", trial.fingers
+        return "no part", "-", trial.fingers
     zone = next(name for name, low, high in ZONES if low <= trial.offset_mm < high)
     return trial.part.name, zone, trial.fingers
 
@@ -63,14 +63,14 @@ def line_of(key, judged):
                 answers[answer] = answers.get(answer, 0) + 1
     squeezes = [one.peak_kpa for one in judged]
     times = [one.answered_s for one in judged]
-    squeeze = f"{statistics.median(squeezes):.1f}, {max(squeezes):.1f}" if key[0] != "nothing" else "-"
+    squeeze = f"{statistics.median(squeezes):.1f}, {max(squeezes):.1f}" if key[0] != "no part" else "-"
     return (*key[:2], str(key[2]), str(len(judged)), squeeze,
             ", ".join(f"{count} {answer}" for answer, count in sorted(answers.items())),
             f"{statistics.median(times):.1f}, {max(times):.1f}")
 
 
 def table(groups):
-    order = [part.name for part in gripping.PARTS] + ["nothing"]
+    order = [part.name for part in gripping.PARTS] + ["no part"]
     zones = [name for name, _, _ in ZONES] + [SLIPPED, "-"]
     keys = sorted(groups, key=lambda key: (order.index(key[0]), zones.index(key[1]), key[2]))
     rows = [HEAD, tuple("---" for _ in HEAD)] + [line_of(key, groups[key]) for key in keys]
@@ -78,13 +78,13 @@ def table(groups):
 
 
 def page(groups, problems, off, wire, version):
-    others = "".join(f"- fingers move {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
+    others = "".join(f"- fingers that move {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
                      f"{len(found)} requirements violated.\n" for percent, (judged, found) in off.items())
     over_the_wire = "" if wire is None else f"""
 ## Over the network
 
-The first {args.wire} of the grips in virtual time are repeated in real time. `softgripd` runs at 100 Hz and drives `softgrip-rig` over Modbus TCP,
-{args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. Every fifth part is removed 1 s after HOLDING is reported. The result must then be PART LOST. {summary(wire[0])}, {len(wire[1])}
+The first {args.wire} of the {args.seeds} grips are repeated in real time. `softgripd` runs at 100 Hz and drives `softgrip-rig` over Modbus TCP,
+{args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. Every fifth part is removed 1 s after the result HOLDING. After the removal, the result must change to PART LOST. Result: {summary(wire[0])}, {len(wire[1])}
 requirements violated.
 
 {table(wire[0])}"""
@@ -93,17 +93,17 @@ requirements violated.
     off_model = max(one.peak_kpa for found, _ in off.values() for group in found.values() for one in group)
     head = results_page.head(
         "Gripping pressure of the shipped sequence",
-        f"In {len(judged)} simulated grips, the gripping pressure was at most {max(one.peak_kpa for one in judged):.1f} kPa; "
-        f"{ALLOWED_KPA:g} kPa are allowed. When the fingers moved 2 % more or less than the model of the controller predicts, the gripping pressure was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
+        f"In {len(judged)} simulated grips, the gripping pressure was at most {max(one.peak_kpa for one in judged):.1f} kPa. "
+        f"The tested sequence permits a gripping pressure of {ALLOWED_KPA:g} kPa. With fingers that move 2 % more or less than the model of the controller predicts, the gripping pressure was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
         "simulated rig; virtual time, and real time over Modbus TCP" if wire else "simulated rig, virtual time")
     return "\n".join(head) + f"""
-The sequence `config/sequences/pick_stone.yaml` runs on the simulated rig of `config/rig.yaml` in virtual time. Two positions of the sequence depend on the expected position of the part: the approach ends {gripping.APPROACH_MM} mm before the expected position, and the grip searches up to {gripping.REACH_MM} mm beyond the expected position. Each seed determines the part, the number of fingers (one or two), and the distance of the part from its expected position. The gripping pressure is the true pressure at the finger minus the pressure that a finger without contact would need to rest at the same position. The table contains the largest gripping pressure after the first contact ([definition](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence allows
-{ALLOWED_KPA:g} kPa; noise and the resolution of the board may add {gripping.TOLERANCE_KPA:g} kPa.
+The sequence `config/sequences/pick_stone.yaml` runs on the simulated rig of `config/rig.yaml` in virtual time. The approach of the sequence ends {gripping.APPROACH_MM} mm before the expected position of the part. The grip closes up to {gripping.REACH_MM} mm beyond the expected position. Each seed determines the part, the number of fingers (one or two), and the distance of the part from its expected position. The gripping pressure is the true pressure at the finger minus the pressure that a finger without contact would need to rest at the same position. The table contains the largest gripping pressure after the first contact ([definition](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence permits a gripping
+pressure of {ALLOWED_KPA:g} kPa. The test tolerates additional {gripping.TOLERANCE_KPA:g} kPa because of noise and the resolution of the board.
 
-{summary(groups)}, {len(problems)} requirements violated. A grip violates a requirement if the gripping pressure exceeds the limit of the sequence, if HOLDING is reported without a part, or if NO PART is reported although a part is present.
+Result: {summary(groups)}, {len(problems)} requirements violated. A grip violates a requirement if the gripping pressure exceeds the limit of the sequence, if HOLDING is reported without a part, or if NO PART is reported although a part is present.
 
 {table(groups)}
-Every third seed is repeated with fingers that move 2 % more or less than the model of the controller predicts:
+The grips of every third seed are repeated with fingers that move 2 % more or less than the model of the controller predicts:
 
 {others}{over_the_wire}"""
 

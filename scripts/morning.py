@@ -20,10 +20,10 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 
 HEAD = """# A morning at the bench
 
-This page shows the output of softgrip for common faults, and what to do. `scripts/morning.py` ran the commands below, with
-`softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output with this
-page. Times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch` shows the
-state of the daemon live. The keys of `softgrip watch` are `s`, `v`, `r`, `a` and `g`
+This page shows the output of softgrip for common faults, and the remedies. `scripts/morning.py` ran the commands below,
+with `softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output
+with this page. On this page, times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines.
+`softgrip watch` shows the state of the daemon live. The keys of `softgrip watch` are `s`, `v`, `r`, `a` and `g`
 ([commands](../reference/commands.md#with-a-daemon)). The first picture shows `softgrip watch` in 80 columns while both
 fingers hold a part. The second picture shows `softgrip watch` in 60 columns after a sensor failed during a hold and
 recovered. `scripts/watch_pictures.py` drew the two pictures from a real terminal:
@@ -133,15 +133,17 @@ def play():
             return self.emulated.port
 
         def no_cable(self):
-            self.say("## The cable is not connected\n\nsoftgripd was started before the board was connected. The missing "
-                     "connection is not a fault yet. The status shows the connection attempts and their interval.")
+            self.say("## The cable is not connected\n\nsoftgripd was started before the board was connected. Until "
+                     "the first connection, softgripd does not report the missing connection as a fault. `softgrip "
+                     "status` shows the number and the interval of the connection attempts.")
             bench.wait_for("slow attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 4)
             self.show_status()
             self.say("The cable is connected:")
 
         def cable_out(self):
-            self.say("## The cable is disconnected\n\nThe rig is idle and holds no part. The fault latches. "
-                     "While the cause of the fault is present, the daemon refuses `acknowledge` with a message that names the cause.")
+            self.say("## The cable is disconnected\n\nThe rig is idle and holds no part. The fault remains latched "
+                     "until it is acknowledged. While the cause of the fault is present, the daemon refuses "
+                     "`acknowledge` with a message that names the cause.")
             self.emulated.ask("fault cable")
             self.softgripd.wait_for_state("faulted")
             bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)
@@ -149,8 +151,8 @@ def play():
                 channel["validity"] == "stale" for channel in self.softgripd.status()["channels"]))
             self.show_status()
             self.show(("acknowledge",))
-            self.say("The doctor reports one failure for the cable. The doctor does not check sensors and models, because "
-                     "these checks need the board:")
+            self.say("`softgrip doctor` reports one failure for the disconnected cable. `softgrip doctor` does not "
+                     "check sensors and models, because the checks of sensors and models need the board:")
             self.show_failures()
             self.say("The cable is connected again:")
             self.emulated.ask("clear cable")
@@ -172,8 +174,8 @@ def play():
 
         def stop_while_holding(self):
             self.say("## Stopped while holding\n\nThe rig file has `holding: hold`, so a stop keeps the part held. "
-                     "The output warns of the remaining pressure and gives the command that vents it. The ready "
-                     "lamp blinks.")
+                     "The output of `softgrip stop` warns of the remaining pressure and gives the command that vents "
+                     "the fingers. The ready lamp blinks while the fingers are pressurised.")
             self.softgripd.start("hand_over")
             bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
             self.show(("stop",))
@@ -196,11 +198,13 @@ def play():
 
         def wrong_recipe(self):
             self.say("## A wrong recipe\n\nThe sequence file has a misspelled key, a unit behind a number and a "
-                     "negative time. All errors are reported at once, with line and column, and nothing moves.")
+                     "negative time. `softgrip start` reports all errors at once, with line and column, and no finger "
+                     "moves.")
             self.write("pick_nut.yaml", WRONG_RECIPE)
             self.page.append(f"```yaml\n{WRONG_RECIPE}```\n")
             self.show(("start", "pick_nut.yaml"))
-            self.say("These errors are corrected. The next message names the motions that the rig cannot make:")
+            self.say("After the correction of the errors in the sequence file, the next message names the motions that the "
+                     "rig cannot make:")
             text = WRONG_RECIPE
             for wrong, right in MENDED:
                 text = text.replace(wrong, right)
@@ -209,7 +213,8 @@ def play():
             self.assertEqual(self.softgripd.status()["state"], "idle")
 
         def crossed_sensors(self):
-            self.say("## Crossed sensors\n\nThe two displacement sensors were connected to each other's inputs. "
+            self.say("## Crossed sensors\n\nThe sensor of each of the two fingers was connected to the input of the "
+                     "other finger. "
                      "`doctor --move` moves one finger after the other and reads all sensors.")
             self.softgripd.end()
             swap = ((r"sensor: \{input: 0\b", "sensor: {input: 99"), (r"sensor: \{input: 1\b", "sensor: {input: 0"),

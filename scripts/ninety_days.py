@@ -272,11 +272,11 @@ def page(args, seen, eventful, healthy, wall_s):
         f"| {NAMES[temperature]} | {fingers_in(healthy, temperature, 'false')} of {2 * args.healthy} | "
         f"{fingers_in(healthy, temperature, 'alone')} of {2 * args.healthy} | "
         f"{sum(bool(told[temperature]['warnings']) for told in healthy)} of {args.healthy} |\n" for temperature in TOGETHER)
-    lists = "".join(f"Alarms, both fingers judged together, {NAMES[t]}:\n\n{listed(healthy, t, 'false')}\n"
+    lists = "".join(f"Alarms if both fingers are evaluated together, {NAMES[t]}:\n\n{listed(healthy, t, 'false')}\n"
                     f"Warnings that the rig has changed, {NAMES[t]}:\n\n{listed(healthy, t, 'warnings')}\n"
-                    f"Alarms, each finger judged alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
-    told = "".join(f"### {NAMES[t].capitalize()}\n\n| change | finger | on day | warned on day | "
-                   f"alarm on day | after grips | indicators in "
+                    f"Alarms if each finger is evaluated alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
+    told = "".join(f"### {NAMES[t].capitalize()}\n\n| change | finger | first day of the change | day of the warning | "
+                   f"day of the alarm | grips between change and alarm | indicators in "
                    f"alarm before the repair | candidate faults in the night of the alarm | candidate faults before the repair |\n"
                    f"|---|---|---|---|---|---|---|---|---|\n{event_rows(seen[t])}\n"
                    f"False alarms: {'; '.join(eventful[t]['false']) or 'none'}. Warnings without an alarm: "
@@ -284,33 +284,33 @@ def page(args, seen, eventful, healthy, wall_s):
     found = sum(bool(one and one["right"]) for _, one in seen[True])
     head = results_page.head(
         "Ninety days of a rig at work",
-        f"With a thermometer, `softgrip health` finds {found} of {len(seen[True])} simulated changes, with false alarms for "
-        f"{fingers_in(healthy, True, 'false')} of {2 * args.healthy} healthy fingers in 90 days.",
+        f"On a rig with a temperature sensor, `softgrip health` finds {found} of {len(seen[True])} simulated changes. In 90 simulated "
+        f"days, it reports a false alarm for {fingers_in(healthy, True, 'false')} of {2 * args.healthy} healthy fingers.",
         results_page.version_of(args.build), f"scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page "
         "docs/results/ninety-days.md", f"simulated rig, virtual time, {len(HOURS)} grips a day of two fingers")
     return "\n".join(head) + f"""
-{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were evaluated{took}. The changes are simulated in the model of the finger. `softgrip health` reads only the recordings, so it has no information about the simulated changes.
+`softgrip health` evaluated {(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run`{took}. The changes of a finger are simulated by changes of its model. `softgrip health` reads only the recordings, so it has no information about the simulated changes.
 
-Each simulation covers {DAYS} days of one rig with two fingers. The daily temperature has a standard deviation of {WEATHER_C:g} °C, and the correlation of two consecutive days is {WEATHER_STAYS:g}. Within a day, the temperature varies sinusoidally with an amplitude of {DAY_C:g} °C.
+Each simulation covers {DAYS} days of one rig with two fingers. The mean temperature of a day has a standard deviation of {WEATHER_C:g} °C, and the correlation of the temperatures of two consecutive days is {WEATHER_STAYS:g}. Within a day, the temperature varies sinusoidally with an amplitude of {DAY_C:g} °C.
 The gain of the left finger changes by {100 * GAIN_PER_C["left"]:g} % per °C, and the gain of the right finger by {100 * GAIN_PER_C["right"]:g} % per °C. The standard deviation of the position of the parts is
-{PART_MM:g} mm. Wear reduces the gain by {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. The recordings of each simulation are evaluated twice: with the recorded temperatures, and without the temperatures, as for a rig without a thermometer.
+{PART_MM:g} mm. Wear reduces the gain of the fingers by {-100 * WEAR_PER_DAY * DAYS:.1g} % in {DAYS} days. The rig has one temperature sensor with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. The recordings of each simulation are evaluated twice: with and without the recorded temperatures. The evaluation without temperatures corresponds to a rig without a temperature sensor.
 
 ## Detected changes
 
-{told}`warned on day` is the day on which `softgrip health` first reported that the difference between the fingers had changed. An `unclear` report does not name the changed finger. `shared` means that the indicator changed for both fingers because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
+{told}The column "day of the warning" contains the day on which `softgrip health` first reported that the difference between the two fingers had changed. A report with the word `unclear` does not name the changed finger. A report with the word `shared` means that the indicator changed equally for both fingers, because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
 
 ## Healthy days
 
-In {args.healthy} simulations of {DAYS} days, only the weather and the wear change the fingers. `softgrip health` monitors nine indicators of each finger. The alarm limits are set for
-on average one false alarm in 3650 daily points of a finger, if the days are independent. For {2 * args.healthy} fingers in {DAYS} days, {2 * args.healthy * DAYS / 3650:.2f} false alarms are therefore expected.
-The table shows how many fingers had an alarm, and in how many simulations a change of the rig was reported:
+In {args.healthy} simulations of {DAYS} days, only the weather and the wear change the fingers. `softgrip health` monitors nine indicators of each finger. The alarm limits are set so that,
+on average, a healthy finger has one false alarm in 3650 daily points, if the days are independent. The expected number of false alarms for {2 * args.healthy} fingers in {DAYS} days is therefore {2 * args.healthy * DAYS / 3650:.2f}.
+The table states the number of fingers with an alarm, and the number of simulations with a reported change of the rig:
 
-| | fingers with an alarm, both fingers judged together | fingers with an alarm, each finger judged alone | simulations with a warning of a change of the rig |
+| evaluated recordings | fingers with an alarm if both fingers are evaluated together | fingers with an alarm if each finger is evaluated alone | simulations with a warning of a change of the rig |
 |---|---|---|---|
 {counts}
-The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
+The temperature coefficient of the gain, which `softgrip health` estimates for each finger, is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the reported changes of the gain of both fingers. The warnings of changes that the weather causes are correct, but they are not useful. The results have three limitations: all simulated fingers are of one type, their temperature equals the ambient temperature
+{lists}An active alarm of an indicator suppresses further alarms of this indicator. Without the temperature, `softgrip health` reports changes of the gain of both fingers that the weather causes. The warnings that the weather causes are correct, but not useful. The results of the simulations have three limitations: all simulated fingers are of one type, their temperature equals the ambient temperature
 without delay, and only the weather is correlated from day to day.
 """
 

@@ -5,14 +5,14 @@ the feedforward of the identified model, PID alone, and the scheme of the paper.
     scripts/textbook_control.py --work DIR [--build build/release] [--fingers 10] [--side-by-side 5] [--page PAGE.md]
                                 [--frequencies-hz 0.05 0.1 0.2 0.5]
 
-Each finger (tests/blind/textbook) is identified twice from its own campaign: with `softgrip identify --structure auto` and
-with `--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus
-TCP, and softgripd tracks one sine with all four copies at 200 Hz. In the first run, four PID controllers track a sine of
-0.2 Hz. The gains of the four controllers are the gains of `softgrip tune` for maximum sensitivities of 2, 1.6, 1.3 and 1.15. The two PID controllers
-with the smallest errors are used in the second run. In the second run, four controllers track the sines of all frequencies:
-the feedforward of the identified model with PID, the two PID controllers, and the scheme of the paper, which is the inverse
-of the Bouc-Wen element with PID. The two controllers with a feedforward use the gains of `softgrip tune`. The error is the
-root mean square of reading minus reference at the time of the reading, from the second cycle on. The noise of the sensor adds its mean square to the error of every scheme, so the table also states the error without the noise.
+For each finger (tests/blind/textbook), two models are identified from simulated logs of this finger: with `softgrip
+identify --structure auto` and with `--structure bouc_wen`. After the identification, tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus TCP, and softgripd tracks one sine with all four copies at 200 Hz. In the first run,
+four PID controllers track a sine of 0.2 Hz. `softgrip tune` computes the gains of the four PID controllers for maximum sensitivities of 2, 1.6, 1.3 and 1.15. In the second run, four controllers track the sines of all frequencies. The first and the second controller are the PID controllers with the smallest errors in the first run. The third controller is the feedforward of the
+identified model with PID. The fourth controller is the scheme of the published paper: the inverse of the Bouc-Wen
+element with PID. `softgrip tune` also computes the gains of the third and the fourth controller. The error is the root
+mean square of reading minus reference at the time of the reading, from the second cycle of the sine on. The mean square
+of the sensor noise is part of the mean square error of every controller, so the table also states a ratio of the errors
+without the noise.
 """
 import argparse
 import concurrent.futures
@@ -179,14 +179,14 @@ def page(results, frequencies_hz, command, version):
     raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
     exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
     meaning = (f"With the feedforward of an identified model and a PID controller, the RMS tracking error is {statistics.median(raw):.1f} times smaller than with the "
-               f"best PID controller alone. Because of the sensor noise, the error could be at most {statistics.median(exact):.1f} times smaller, even with a perfect controller.")
+               f"best PID controller alone. Because of the sensor noise, even a perfect controller could reduce the RMS tracking error of the best PID controller by at most a factor of {statistics.median(exact):.1f}.")
     lines = [*results_page.head("Tracking control of fingers that are simulated with equations from textbooks", meaning, version, command,
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
-             f"The study contains {len(results)} simulated fingers. The amplitude of the sines is 25 % of the span. The standard deviation of the sensor noise is "
-             f"{NOISE_MM} mm. The RMS error contains the sensor noise, so no controller can have an RMS error below the noise.", "",
-             "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median | "
-             "smallest of these ratios | this ratio without the sensor noise, median | error of the best PID / error of the scheme of the paper, median |", "|---|---|---|---|---|---|---|---|"]
+             f"The study contains {len(results)} simulated fingers. The amplitude of the sines is 25 % of the displacement span of the finger. The standard deviation of the sensor noise is "
+             f"{NOISE_MM} mm. The RMS error includes the sensor noise, so no controller can have an RMS error below {NOISE_MM} mm.", "",
+             "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median of all fingers | "
+             "error of the best PID / error of identified model and PID, smallest value of all fingers | error of the best PID / error of identified model and PID without the sensor noise, median of all fingers | error of the best PID / error of the scheme of the paper, median of all fingers |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
         median = [statistics.median(r["errors_mm"][hz, "identified"] for r in results),
                   statistics.median(best_pid(r, hz) for r in results),
@@ -197,9 +197,9 @@ def page(results, frequencies_hz, command, version):
                      f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
                      f"{statistics.median(paper):.1f} times |")
     lines += ["", f"With the identified model and PID, the RMS error of the readings is {statistics.median(raw):.1f} times smaller than with the "
-              f"best PID (median over all fingers and frequencies). If a finger followed the reference exactly, the RMS error of the readings would be {statistics.median(exact):.1f} times smaller. Without the sensor noise, the error is "
-              f"{statistics.median(every):.1f} times smaller than with the best PID.", "", "## Errors of the readings, for each finger", "",
-              "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
+              f"best PID (median over all fingers and frequencies). If the finger followed the reference exactly, the RMS error of the readings would be {statistics.median(exact):.1f} times smaller than with the best PID. "
+              f"After subtraction of the sensor noise, the RMS error with the identified model and PID is {statistics.median(every):.1f} times smaller than with the best PID.", "", "## RMS errors of the readings for each finger, in mm", "",
+              "| kind of the simulated finger | seed | reference (mean ± amplitude) | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
               "|---" * (3 + len(frequencies_hz)) + "|"]
     for r in results:
         cells = [", ".join(f"{e:.3f}" for e in (r["errors_mm"][hz, "identified"], best_pid(r, hz), r["errors_mm"][hz, "paper"]))

@@ -53,7 +53,7 @@ def summary(rows):
 
     for columns, most in HELD_OUT_AT_MOST.items():
         among = [r for r in clean if r["columns"] == columns]
-        line(f"without an effect, {columns_text(columns)}: held-out error at most {most:g} times the sensor noise", "100 %",
+        line(f"cases without an effect, {columns_text(columns)}: held-out error at most {most:g} times the sensor noise", "100 %",
              within(among, most), among)
     line("cases without an effect: no wrong cause is named", "at least 97 %",
          share(sum(not r["wrong"] for r in clean), len(clean)), clean)
@@ -63,14 +63,14 @@ def summary(rows):
     for strength in sorted({r["strength"] for r in singles}, reverse=True):
         among = [r for r in singles if r["strength"] == strength]
         line(f"one effect of strength {strength:g}: effect found", wanted.get(strength, "-"), found_of(among), among)
-    line("one effect: a wrong cause is named", "at most 3 %", wrong_of(singles), singles)
+    line("cases with one effect: a wrong cause is named", "at most 3 %", wrong_of(singles), singles)
     for size, word in ((2, "two"), (3, "three")):
         among = [r for r in rows if len(r["causes"]) == size]
-        line(f"{word} effects: share of the effects that are found", "-", found_of(among), among)
-        line(f"{word} effects: cases in which {'both' if size == 2 else 'all'} effects are found", "-", share(sum(len(r["found"]) == size for r in among), len(among)), among)
-        line(f"{word} effects: a wrong cause is named", "-", wrong_of(among), among)
+        line(f"cases with {word} effects: percentage of the effects that are found", "-", found_of(among), among)
+        line(f"cases with {word} effects: {'both' if size == 2 else 'all'} effects are found", "-", share(sum(len(r["found"]) == size for r in among), len(among)), among)
+        line(f"cases with {word} effects: a wrong cause is named", "-", wrong_of(among), among)
     closed = [r for r in rows if r.get("feedforward")]
-    line("the extended model gives a feedforward", "100 %", share(sum(r["feedforward"] != "none" for r in closed), len(closed)),
+    line("a feedforward can be computed from the extended model", "100 %", share(sum(r["feedforward"] != "none" for r in closed), len(closed)),
          closed)
     return lines
 
@@ -95,7 +95,7 @@ def clean_table(rows):
                           median(extended), ", ".join(f"{name} ({n})" for name, n in own.most_common()),
                           instead(among)))
     return table(("make", "columns", "cases", "held-out error of `identify` / noise, median", "held-out error of `identify` / noise, largest",
-                  "held-out error of the model of the diagnosis / noise, median", "own physics named", "wrongly named"), lines)
+                  "held-out error of the model of the diagnosis / noise, median", "named causes that describe own physics", "wrongly named causes"), lines)
 
 
 def split_table(rows, key, text=str):
@@ -107,7 +107,7 @@ def split_table(rows, key, text=str):
         by_strength = [found_of([r for r in among if r["strength"] == s]) for s in strengths]
         if among:
             lines.append((text(value), len(among), *by_strength, wrong_of(among), instead(among)))
-    return table((key, "cases", *(f"found at strength {s:g}" for s in strengths), "wrong", "wrongly named"), lines)
+    return table((key, "cases", *(f"found at strength {s:g}" for s in strengths), "cases with a wrongly named cause", "wrongly named causes"), lines)
 
 
 def cause_table(rows):
@@ -122,8 +122,8 @@ def cause_table(rows):
         lines.append((cause, *(f"{sum(len(r['found']) for r in some)} of {len(some)}" for some in at),
                       share(sum(len(r["found"]) for r in among), len(among)),
                       sum(len(r["alone"]) for r in among), in_part, instead(among)))
-    return table(("cause", *(f"found at strength {s:g}" for s in strengths), "found in total", "named alone", "only listed as a partial cause",
-                  "wrongly named"), lines)
+    return table(("cause", *(f"found at strength {s:g}" for s in strengths), "found in total", "named without alternatives",
+                  "only listed as a partial cause", "wrongly named causes"), lines)
 
 
 def wrong_table(rows):
@@ -131,16 +131,16 @@ def wrong_table(rows):
     lines = [("+".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], columns_text(r["columns"]), r["seed"],
               ", ".join(r["wrong"]), ", ".join(name for name in r["named"] if name not in r["wrong"]), r["verdict"])
              for r in rows if r["wrong"]]
-    return table(("hidden", "strength", "make", "columns", "seed", "wrong", "also named", "verdict"), sorted(lines))
+    return table(("hidden cause", "strength", "make", "columns", "seed", "wrongly named cause", "other named causes", "verdict"), sorted(lines))
 
 
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in summary(rows)}
     found = [measured.get(f"one effect of strength {strength}: effect found", "-") for strength in (8, 2)]
-    return (f"The fingers and valves are simulated with equations from textbooks that softgrip does not use. If the hidden effect "
-            f"changes the displacement by 8 times the sensor noise, the diagnosis finds the true cause in {found[0]} of the cases, and in "
-            f"{found[1]} at 2 times the noise. The diagnosis names a wrong cause in "
-            f"{measured.get('one effect: a wrong cause is named', '-')} of the cases.")
+    return (f"In this campaign, the fingers and valves are simulated with textbook equations that softgrip does not use. If the hidden "
+            f"effect changes the displacement by 8 times the sensor noise, the diagnosis finds the true cause in {found[0]} of the cases. "
+            f"With a change of 2 times the sensor noise, it finds the true cause in {found[1]} of the cases. The diagnosis names a wrong "
+            f"cause in {measured.get('cases with one effect: a wrong cause is named', '-')} of the cases with one effect.")
 
 
 def made(results, planned):
@@ -148,20 +148,37 @@ def made(results, planned):
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     of_planned = f" of {planned} planned" if len(results) < planned else ""
     unreachable = sum(not r.get("reachable", True) for r in results)
-    return (f"{len(results)} simulated cases{of_planned}, {len(failed)} of them failed, in {unreachable} the effect did not reach its "
-            f"strength. Median time of a diagnosis on one core of a shared machine: "
-            f"{statistics.median(walls):.0f} s, longest {max(walls):.0f} s.")
+    return (f"{len(results)} simulated cases{of_planned}, of which {len(failed)} failed. In {unreachable} cases, the effect did not reach "
+            f"its strength. On one core of a shared machine, a diagnosis took {statistics.median(walls):.0f} s (median) and at most "
+            f"{max(walls):.0f} s.")
 
 
 INTRODUCTION = """\
-The simulation uses none of the equations of softgrip's models. The flow through the simulated valve follows ISO 6358. A PI controller positions the spool of the valve, which has overlap and pilot hysteresis. There are five types of fingers (column `make`), which differ in the simulation of the hysteresis and the creep: generalised play operators, Maxwell-slip elements, Preisach relays, a rubber tube that is divided into slices and has a Prony series, and play operators with fractional creep. All types have creep with time constants over five decades and a slightly nonlinear characteristic.
-Each case has three logs. The standard deviation of the noise is 0.04 mm for the displacement readings, 0.05 kPa for the measured pressures and 0.3 kPa for the supply pressures.
+The simulations of this campaign use none of the equations of softgrip's models. The flow through the simulated valve
+follows ISO 6358. A PI controller positions the spool of the valve, which has overlap and pilot hysteresis. The simulated
+fingers are of five types (column `make`), which differ in the equations for hysteresis and creep: generalised play
+operators, Maxwell-slip elements, Preisach relays, a rubber tube that is divided into slices and has a Prony series, and
+play operators with fractional creep. All five types have creep with time constants over five decades, and a slightly
+nonlinear characteristic. Each case has three logs. The standard deviation of the noise is 0.04 mm for the displacement
+readings, 0.05 kPa for the measured pressures and 0.3 kPa for the supply pressures.
 
-The strength of an effect is the RMS of the displacement change that the effect causes in the logs of the case, divided by the sensor noise of 0.04 mm. The part of the displacement change that a refit of the model can absorb is not included. A refit can absorb any change of the zero offset and of the gain. A refit can also absorb any hysteresis width, curvature and creep that fingers of this type can have. For a leak, the complete displacement change is included.
-*Own physics* are mechanisms that the simulated finger and valve have even without the hidden effect. A mechanism is included only if its removal changes the displacement by more than 25 % of the sensor noise. A named cause is not counted as wrong if it describes own physics of the case. A named hidden cause is counted as found even if it also describes own physics (for example an additional valve lag).
+The strength of an effect is the RMS of the displacement change that the effect causes in the logs of the case, divided by
+the sensor noise of 0.04 mm. The strength does not include the part of the displacement change that a refit of the model can absorb. A
+refit can absorb any change of the zero offset and of the gain. A refit can also absorb any hysteresis width, curvature
+and creep that fingers of this type can have. For a leak, the strength includes the complete displacement change. *Own
+physics* are mechanisms that the simulated finger and valve have even without the hidden effect. A mechanism belongs to
+the own physics only if its removal changes the displacement by more than 25 % of the sensor noise. A named cause is not
+counted as wrong if it describes the own physics of the simulated finger and valve. A hidden cause that is named is
+counted as found, even if it also describes the own physics. An example of such a cause is an additional valve lag.
 
-The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`). This model represents a user who identifies a model on one finger and uses it for a second finger of the same type. `--given commissioned` starts from the model of `softgrip identify --structure
-auto` that was fitted to different logs of the same finger without the effect. A cause is *found* if it is named or is an alternative of a named cause, with any verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if the finger contains neither this cause nor one of its alternatives. The held-out error of `identify` is the error of `softgrip identify --structure auto` on interleaved blocks. The held-out error of the model of the diagnosis is the error on the held-out blocks of the diagnosis. If the pressure is recorded, the measured pressure is the input of the models (`--drive measured`); otherwise the command is the input. If the pressure is recorded, the diagnosis finds causes in the valve by a comparison of the measured pressure with the command."""
+The diagnosis starts from a plain Bouc-Wen model of a different finger (`tests/blind/textbook/given.yaml`). The plain model represents a user who identifies a model on one finger and uses the model for a second finger of the same type. With `--given
+commissioned`, the diagnosis starts from a model that `softgrip identify --structure auto` has fitted to different logs of
+the same finger, without the effect. A cause is *found* if it is named or is an alternative of a named cause, regardless of the verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if the finger contains
+neither this cause nor one of its alternatives. The held-out error of `identify` is the error of `softgrip identify
+--structure auto` on interleaved blocks. The held-out error of the model of the diagnosis is the error on the held-out
+blocks of the diagnosis. If the logs contain a measured pressure, this pressure is the input of the models (`--drive
+measured`). For logs without a measured pressure, the commanded pressure is the input of the models. With a measured pressure, the diagnosis finds
+causes in the valve by a comparison of the measured with the commanded pressure."""
 
 
 def write(path, results, planned, command, variation, version):
@@ -183,9 +200,9 @@ def write(path, results, planned, command, variation, version):
                 r["rivals"].append(rivals)
     confusion_path.write_text(blind_page.confusion(plain))
     lines = [*results_page.head("Textbook campaign", meaning(rows), version, command, made(results, planned)),
-             f"Every outcome is a line of [{rows_path.name}]({rows_path.name}). If you copy `{rows_path.name}` to `DIR/textbook.jsonl`, `scripts/textbook_campaign.py` continues from it.",
+             f"Every line of [{rows_path.name}]({rows_path.name}) contains the outcome of one case. If you copy `{rows_path.name}` to `DIR/textbook.jsonl`, `scripts/textbook_campaign.py` skips the cases that the file contains.",
              "", *INTRODUCTION.splitlines(), "", variation, "",
-             *table(("measure", "wanted", "measured (95 % interval)", "cases"), summary(rows)),
+             *table(("measure", "required", "measured (95 % interval)", "number of cases"), summary(rows)),
              "## Without an effect", "", *clean_table(rows), "## By cause, hidden alone", "", *cause_table(rows),
              f"![Outcomes by hidden cause]({bars_path.name})", "",
              f"![Named cause by hidden cause, without own physics]({confusion_path.name})", "",

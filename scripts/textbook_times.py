@@ -59,8 +59,8 @@ def timed(build, threads, world):
 
 def summary(rows):
     lines = []
-    for name, among in (("all", rows), ("pressure measured", [r for r in rows if r["columns"] == "pressure"]),
-                        ("command alone", [r for r in rows if r["columns"] == "command"])):
+    for name, among in (("all cases", rows), ("logs with a measured pressure", [r for r in rows if r["columns"] == "pressure"]),
+                        ("logs with the commanded pressure alone", [r for r in rows if r["columns"] == "command"])):
         if among:
             wall = [r["wall_s"] for r in among]
             lines.append((name, len(among), f"{statistics.median(wall):.1f}", f"{max(wall):.1f}",
@@ -87,11 +87,11 @@ def page(args, rows, command):
             f"{len(rows)} cases that are simulated with equations from textbooks, three logs each, "
             f"{statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} threads of "
             f"{os.cpu_count()} processors, closed loop and report included"),
-        f"Required: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
-        f"{longest:.1f} s.", "",
-        *table(("", "cases", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),
-        *table(("stage", "share of the time"), shares(rows)),
-        "The five longest diagnoses:", "",
+        f"Required: a median of at most {WANTED['median']} s and a longest duration of at most {WANTED['longest']} s. "
+        f"Measured: a median of {median:.1f} s and a longest duration of {longest:.1f} s.", "",
+        *table(("cases", "number of cases", "median duration [s]", "longest duration [s]", "median processor time [s]"), summary(rows)),
+        *table(("stage of the diagnosis", "fraction of the total time"), shares(rows)),
+        "The table lists the five longest diagnoses:", "",
         *table(("hidden cause", "strength", "type of finger", "columns", "seed", "verdict", "duration [s]"), [
             (" + ".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], r["columns"], r["seed"], r["verdict"],
              f"{r['wall_s']:.1f}") for r in slowest])])

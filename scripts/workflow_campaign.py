@@ -104,19 +104,19 @@ def page(args, figures):
     first_s, second_s, done, twice = figures["killed"]
     lines = [*results_page.head(
                  "The workflow compared with a plain loop",
-                 f"On {rows} short rows the workflow takes {seconds[1] / seconds[0]:.1f} times as long as a plain loop. After a kill, the "
-                 f"workflow repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
+                 f"For {rows} short rows (fits of a model to one log each), the workflow takes {seconds[1] / seconds[0]:.1f} times as long as a "
+                 f"plain loop. After a kill, the restarted workflow repeats {twice} of the {done} completed rows.", results_page.version_of(args.build),
                  f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
-                 f"{os.cpu_count()} processors, which other programs used, too"),
-             "The column *load* is the 1-minute load of the machine. Each row of the workflow runs `softgrip identify --threads 1` for a different simulated finger, with a log of 25 s at 20 Hz. Short rows are the worst case of the workflow, because the overhead per row does not depend on the duration of the row.", "",
-             "| method | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
+                 f"{os.cpu_count()} processors, which other programs also used"),
+             "The column *load* contains the 1-minute load of the machine. Each row of the workflow runs `softgrip identify --threads 1` for a different simulated finger, with a log of 25 s at 20 Hz. The overhead of the workflow per row does not depend on the duration of the row. Short rows are therefore the worst case for the comparison with a plain loop.", "",
+             "| method | wall time | wall time per row | load | number of models, hash over all models |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")
     whole_s = figures["whole_s"]
     lines += ["", f"The models of all methods are {'identical, byte by byte' if same else 'NOT identical'}.", "",
-              f"A workflow was killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and started again. The "
-              f"second start took {second_s:.0f} s, so the workflow took {first_s + second_s:.0f} s in total. An undisturbed workflow directly "
-              f"before took {whole_s:.0f} s. Of the rows that were done, {twice} {'was' if twice == 1 else 'were'} run twice."]
+              f"The workflow was killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were complete, and was then restarted. "
+              f"The restarted workflow took {second_s:.0f} s, so the workflow before and after the kill took {first_s + second_s:.0f} s in total. A workflow without "
+              f"a kill, which ran directly before, took {whole_s:.0f} s. The restarted workflow repeated {twice} of the completed rows."]
     return "\n".join(lines) + "\n"
 
 
@@ -143,7 +143,7 @@ def main():
     told("a plain loop that runs one row after another", plain_loop(args, program, loop), [loop / name for name in names])
     for name, out, words in (
             (f"the workflow, `--cores {args.cores}`", args.work / "cores", []),
-            (f"the workflow on a Slurm of this machine, {args.batch} rows per job", args.work / "slurm",
+            (f"the workflow with a Slurm server on this machine, {args.batch} rows per job", args.work / "slurm",
              ["--slurm", "--batch", str(args.batch)])):
         shutil.rmtree(out, ignore_errors=True)
         begin = ["bash", ROOT / "scripts/slurm_here.sh", args.work / "slurm_state"] if words else []

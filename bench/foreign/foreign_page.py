@@ -101,11 +101,11 @@ def pair_tables(values, judge, more_head, more_cells):
 
 
 PLAIN_TEXT = [
-    "*fitted*, *left out* and *later* are RMSE values of the plain identified model (`softgrip identify` without `--structure`). *fitted* is the RMSE on the baseline runs.",
-    "*left out* is the largest RMSE on a baseline run that was left out of the fit. *later* is the RMSE on the later run.",
-    "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on a further healthy run. The bound is computed from",
-    "the errors on the baseline runs that were left out.",
-    "*ratio* is *later* divided by *bound*. With 1 baseline run there is no bound, and *ratio* is *later* divided by *fitted*."]
+    "The columns *fitted*, *left out* and *later* contain RMSE values of the plain identified model (`softgrip identify` without `--structure`). *fitted* is the RMSE on the baseline runs, to which the model was fitted.",
+    "*left out* is the largest RMSE on a baseline run to which the model was not fitted. *later* is the RMSE on the later run of the pair.",
+    "*bound* is the one-sided 95 % prediction bound (Student's t) for the RMSE on a further healthy run. The bound is computed from",
+    "the RMSE values on the baseline runs to which the model was not fitted.",
+    "*ratio* is *later* divided by *bound*. A pair with 1 baseline run has no *bound*, so its *ratio* is *later* divided by *fitted*."]
 
 
 def repeats_section(values):
@@ -117,15 +117,15 @@ def changes_section(values):
         return [case["label"], ", ".join(case["causes"]),
                 "-" if case["exceeds_spread"] is None else "yes" if case["exceeds_spread"] else "no",
                 "named" if case["named_correctly"] else "listed" if case["listed"] else
-                "wrong alone" if case["wrong_alone"] else "not named"]
-    return ["## Labelled changes", "", "A change exceeds the run-to-run spread if the RMSE *later* is larger than *bound*.",
+                "only a wrong cause named" if case["wrong_alone"] else "not named"]
+    return ["## Labelled changes", "", "A change exceeds the run-to-run spread if the RMSE in the column *later* is larger than the value in the column *bound*.",
             "",
             *pair_tables(values, "changes", ["label", "admissible causes", "exceeds spread", "answer"], cells)]
 
 
 STICTION_TEXT = [
-    "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which `bench/foreign/horch.py` computes without softgrip. The valve sticks",
-    "if the ratio is above 2/3, and does not stick if it is below 1/3. The authors knew the labels of these loops when they chose the form of the test, so the counts of this test are not an independent evaluation."]
+    "The column *phase ratio* contains the statistic of Horch's phase test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which `bench/foreign/horch.py` computes without softgrip. According to this test, the valve sticks",
+    "if the phase ratio is above 2/3, and does not stick if the phase ratio is below 1/3. The authors knew which valves are labelled as sticking when they chose the form of the test, so the counts of this test are not an independent evaluation."]
 
 
 def stiction_section(values):
@@ -137,15 +137,15 @@ def stiction_section(values):
 
 
 IDENTIFICATION_TEXT = [
-    "The values are held-out RMSE in % of the span of the log. If a case has a single log, its first half is fitted, and its second half is predicted by a simulation",
-    "from the start of the log. In a case `A -> B`, log A is fitted and log B is predicted. *plain* is `softgrip identify`, *auto* is",
-    "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`). The order is 3 because the published model of the finger also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
-    "(`bench/foreign/scipy_bouc_wen.py`). On log B, *output error* and *SciPy* estimate only the offset, from the first 5 % of the log (at least 2 s).",
-    "If the column *drive* contains *command*, the command is the input of every model. If it contains *measured*, the measured pressure is the input of every model.",
+    "The table contains the held-out RMSE in % of the span of the log. If a case has a single log, each method fits the first half of the log, and predicts the second half by a simulation",
+    "from the start of the log. In a case `A -> B`, each method fits log A and predicts log B. The column *plain* is `softgrip identify`, and the column *auto* is",
+    "`softgrip identify --structure auto`. The column *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`). The order is 3 because the published model of the finger also has 3 states. The column *SciPy* is a Bouc-Wen model with 2 Kelvin-Voigt branches, which `least_squares` fits",
+    "(`bench/foreign/scipy_bouc_wen.py`). For the prediction of log B, *output error* and *SciPy* estimate the offset from the first 5 % of log B (at least 2 s), and no other parameter.",
+    "If the column *drive* contains *command*, the commanded pressure is the input of every model. If the column *drive* contains *measured*, the measured pressure is the input of every model.",
     "The authors knew the held-out errors on `piezo` and `hydraulic` when they chose the rule for the initial state of the linear model.",
     "The authors knew the errors on `asu_softarm` and `hydraulic` when they added these functions to *auto*: the start at rest, the bounded response, the second lag, the",
-    "rate limit and the resonance. The counts on these two sets are therefore not an independent evaluation of these functions.",
-    "The smallest error of each row is bold. The column *linear better* contains yes if the error of the linear model is more than 10 % smaller than the error of *auto*.",
+    "rate limit and the resonance. The counts on `asu_softarm` and `hydraulic` are therefore not an independent evaluation of these functions.",
+    "The smallest error of each row is bold. The column *linear better* contains *yes* if the error of the linear model is more than 10 % smaller than the error of *auto*.",
     "In the column *structure of auto*, a creep ladder is a chain of Kelvin-Voigt elements."]
 
 
@@ -213,7 +213,7 @@ def head(values, title, command):
     lines = results_page.head(title, meaning(values, title[0].lower() + title[1:]), values["softgrip"]["version"], command,
                               f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}",
                               values["began"][:10])
-    return [*lines, "The time of a case is the duration of all its calls of softgrip; if two cases use the same identification, its duration is counted in each of the two cases. "
+    return [*lines, "The column *time* contains the total duration of all calls of softgrip for a case. If two cases use the same identification, the times of both cases include the duration of this identification. "
             "[How to repeat the measurements](../how-to/measure.md#data-of-other-laboratories)."]
 
 

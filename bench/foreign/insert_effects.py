@@ -54,23 +54,23 @@ def with_play(readings, width):
 # name: (label, causes that are correct answers, function of time, readings, lowest reading and stroke that returns the new
 # readings)
 EFFECTS = {
-    "contact": ("an object at 60 % of the stroke, which makes the finger 4 times as stiff", ["contact"],
+    "contact": ("an object at 60 % of the stroke, beyond which the finger is 4 times as stiff as in free motion", ["contact"],
                 lambda t, y, low, s: np.where(y > low + 0.6 * s, low + 0.6 * s + 0.25 * (y - low - 0.6 * s), y)),
-    "stop": ("a stop at 70 % of the stroke", ["contact", "sensor_saturation"],
+    "stop": ("a mechanical stop at 70 % of the stroke", ["contact", "sensor_saturation"],
              lambda t, y, low, s: noisy(np.minimum(y, low + 0.7 * s), s)),
-    "gain": ("the stroke is 15 % smaller", ["ageing", "payload", "stress_softening", "thermal_gain"],
+    "gain": ("the stroke is reduced by 15 %", ["ageing", "payload", "stress_softening", "thermal_gain"],
              lambda t, y, low, s: low + 0.85 * (y - low)),
-    "weight": ("a weight: the stroke is 10 % smaller, and all readings are too low by 5 % of the stroke", ["payload", "ageing"],
+    "weight": ("a weight, which reduces the stroke by 10 % and all readings by 5 % of the stroke", ["payload", "ageing"],
                lambda t, y, low, s: low - 0.05 * s + 0.9 * (y - low)),
     "drift": ("the zero offset of the sensor drifts by 20 % of the stroke during the run", ["sensor_drift"],
               lambda t, y, low, s: y + 0.2 * s * (np.asarray(t) - t[0]) / (t[-1] - t[0])),
-    "delay": (f"displacement and pressure are delayed by {DELAY_S} s", ["transport_delay", "valve_lag", "sensor_lag"],
+    "delay": (f"displacement and pressure are delayed by {DELAY_S} s relative to the command", ["transport_delay", "valve_lag", "sensor_lag"],
               lambda t, y, low, s: later_by(t, y, DELAY_S)),
     "filter": (f"a low-pass filter with a time constant of {LAG_S} s after the sensor", ["sensor_lag", "valve_lag", "transport_delay"],
                lambda t, y, low, s: lagged(t, y, LAG_S)),
-    "play": ("play of 10 % of the stroke before the sensor", ["backlash", "hysteresis_shape", "asymmetric_hysteresis"],
+    "play": ("mechanical play of 10 % of the stroke between the finger and the sensor", ["backlash", "hysteresis_shape", "asymmetric_hysteresis"],
              lambda t, y, low, s: noisy(with_play(y, 0.1 * s), s)),
-    "bend": ("in the middle of the stroke, the readings are too high by 10 % of the stroke", ["sensor_nonlinearity", "stiffening"],
+    "bend": ("a nonlinear sensor: in the middle of the stroke, the readings are too high by 10 % of the stroke", ["sensor_nonlinearity", "stiffening"],
              lambda t, y, low, s: y + 0.4 * (y - low) * (1 - (y - low) / s)),
 }
 

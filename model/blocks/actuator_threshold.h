@@ -13,7 +13,7 @@ class ActuatorThreshold {
  public:
   static constexpr BlockInfo info = block_info(
       "actuator_threshold", Station::actuator, Kind::pressure, Inverse::implicit, "Actuator threshold",
-      "The actuator does not move below a threshold pressure.", "q = max(p - threshold, 0) for p >= 0");
+      "The actuator moves only at pressures above a threshold.", "q = max(p - threshold, 0) for p >= 0");
   static constexpr std::array parameters{parameter("threshold_kpa", "kPa", "pressure at which motion begins",
                                                    Typical{3.0}, Within{0.0, 1000.0}, Scale{1.0},
                                                    Neutral{0.0})};

@@ -16,10 +16,10 @@ class AsymmetricValveLag {
       "First-order lag of the regulator and the tube, with different time constants for filling and venting.",
       "tau p' = u - p, tau = filling where u > p, venting where u < p");
   static constexpr std::array parameters{
-      parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.05},
-                Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
-      parameter("venting_time_constant_s", "s", "time constant while the pressure falls", Typical{0.1},
-                Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
+      parameter("filling_time_constant_s", "s", "time constant of the lag while the pressure rises",
+                Typical{0.05}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
+      parameter("venting_time_constant_s", "s", "time constant of the lag while the pressure falls",
+                Typical{0.1}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
 
   AsymmetricValveLag(std::span<const T> values, const Preparation& preparation)
       : lag_(values[0], values[1], preparation.sample_time_s) {}

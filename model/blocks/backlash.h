@@ -14,7 +14,7 @@ class Backlash {
  public:
   static constexpr BlockInfo info =
       block_info("backlash", Station::load, Kind::displacement, Inverse::ignored, "Backlash",
-                 "Play between the actuator and the measured point.",
+                 "Mechanical play between the actuator and the point whose displacement is measured.",
                  "|y - z| <= gap/2; z moves only to keep this condition");
   static constexpr std::array parameters{
       parameter("gap_mm", "mm", "motion of the actuator that is lost at a reversal", Typical{0.3},

@@ -90,22 +90,23 @@ class BoucWen {
  public:
   static constexpr BlockInfo info =
       block_info("bouc_wen", Station::actuator, Kind::element, Inverse::implicit, "Bouc-Wen hysteresis",
-                 "Rate-independent hysteresis.",
+                 "Rate-independent hysteresis of the Bouc-Wen model.",
                  "y += alpha p - h, h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h");
   static constexpr std::array parameters{
-      parameter("alpha_mm_per_kpa", "mm/kPa", "elastic gain", Typical{0.35}, Within{0.0, 1e4}, Scale{0.1},
-                Neutral{0.0}, PerPressure{}),
+      parameter("alpha_mm_per_kpa", "mm/kPa",
+                "elastic gain: displacement per pressure without the hysteretic state h", Typical{0.35},
+                Within{0.0, 1e4}, Scale{0.1}, Neutral{0.0}, PerPressure{}),
       parameter("beta_mm_per_kpa", "mm/kPa",
-                "initial gain of the hysteretic state; the model can be inverted if this gain is below the "
+                "initial gain of the hysteretic state h; the model has an inverse if this gain is below the "
                 "instantaneous gain of the actuator",
                 Typical{0.2}, Within{0.0, 1e4}, Scale{0.1}, Neutral{0.0}, PerPressure{}),
-      parameter(
-          "gamma_per_kpa", "1/kPa",
-          "saturation rate of the hysteretic state, equal in both directions (also per mm^(exponent-1))",
-          Typical{0.03}, Within{-1e4, 1e4}, Scale{0.02}, PerPressure{}),
+      parameter("gamma_per_kpa", "1/kPa",
+                "saturation rate of the hysteretic state h, equal in both directions; for an exponent n, the "
+                "unit is 1/(kPa mm^(n-1))",
+                Typical{0.03}, Within{-1e4, 1e4}, Scale{0.02}, PerPressure{}),
       parameter("eta_per_kpa", "1/kPa",
-                "saturation rate while the hysteretic state grows; determines the width of the loop (also "
-                "per mm^(exponent-1))",
+                "saturation rate while the hysteretic state h grows, which determines the width of the loop; "
+                "for an exponent n, the unit is 1/(kPa mm^(n-1))",
                 Typical{0.03}, Within{0.0, 1e4}, Scale{0.02}, PerPressure{}),
       parameter("exponent", "", "exponent n, which determines the sharpness of the saturation", Typical{1.0},
                 Within{1.0, 4.0}, Scale{1.0}, Whole{})};

@@ -17,10 +17,10 @@ class ChamberLag {
                  "First-order lag between the pressure sensor and the chamber of the finger.",
                  "tau p' = q - p, tau = filling where q > p, venting where q < p");
   static constexpr std::array parameters{
-      parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.1},
-                Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
-      parameter("venting_time_constant_s", "s", "time constant while the pressure falls", Typical{0.2},
-                Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
+      parameter("filling_time_constant_s", "s", "time constant of the lag while the pressure rises",
+                Typical{0.1}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
+      parameter("venting_time_constant_s", "s", "time constant of the lag while the pressure falls",
+                Typical{0.2}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
 
   ChamberLag(std::span<const T> values, const Preparation& preparation)
       : lag_(values[0], values[1], preparation.sample_time_s) {}

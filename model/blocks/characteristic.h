@@ -14,14 +14,15 @@ class Characteristic {
  public:
   static constexpr BlockInfo info =
       block_info("characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
-                 "The displacement is a nonlinear function of the sum of the elements. The function is the "
-                 "same for loading and unloading.",
+                 "The displacement is a nonlinear function of the summed displacement of all blocks that "
+                 "compute a displacement. Loading and unloading have the same nonlinear function.",
                  "z = span (exp(a y/span) - 1) / (exp(a) - 1) from 0 to span, straight beyond");
   static constexpr std::array parameters{
       parameter("curvature", "", "parameter a; if a is above 0, the finger is softer at larger displacements",
                 Typical{0.5}, Within{-4.0, 4.0}, Scale{0.2}, Neutral{0.0}),
-      parameter("span_mm", "mm", "end of the nonlinear range (span of the data)", Typical{20.0},
-                Within{1e-6, 1e6}, Scale{1.0}, Placed{})};
+      parameter("span_mm", "mm",
+                "displacement at which the nonlinear range ends: the span of the logged displacements",
+                Typical{20.0}, Within{1e-6, 1e6}, Scale{1.0}, Placed{})};
 
   Characteristic(std::span<const T> values, const Preparation&) : map_{values[0], values[1]} {}
 

@@ -12,10 +12,11 @@ namespace softgrip::model {
 template <class T>
 class ClockOffset {
  public:
-  static constexpr BlockInfo info = block_info(
-      "clock_offset", Station::sensor, Kind::reading, Inverse::ignored, "Clock offset",
-      "The clocks of the readings and of the commands differ, so that the readings appear too early.",
-      "z = y + lead dy/dt");
+  static constexpr BlockInfo info =
+      block_info("clock_offset", Station::sensor, Kind::reading, Inverse::ignored, "Clock offset",
+                 "The clock of the readings and the clock of the commands have an offset, so that the "
+                 "readings appear earlier than they were sampled.",
+                 "z = y + lead dy/dt");
   static constexpr std::array parameters{
       parameter("lead_s", "s", "time by which the reading leads the displacement", Typical{0.05},
                 Within{0.0, 1000.0}, Scale{0.02}, Neutral{0.0}, Latency{})};

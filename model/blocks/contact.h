@@ -14,14 +14,15 @@ class Contact {
   static constexpr bool at_samples = true;
   static constexpr BlockInfo info = block_info(
       "contact", Station::load, Kind::displacement, Inverse::implicit, "Contact",
-      "The stiffness increases beyond a position, because the finger touches an object or a stop.",
+      "Beyond a contact position, the finger is stiffer than in free motion, because it touches an object or "
+      "a stop.",
       "z = y up to the position, beyond it position + (y - position)/(1 + stiffening)", Repeatable{});
   static constexpr std::array parameters{
       parameter("position_mm", "mm", "displacement at which contact begins", Typical{15.0},
                 Within{-1000.0, 1000.0}, Scale{2.0}),
       parameter("stiffening", "",
-                "stiffness of the contact relative to the stiffness of the free actuator; the value 1 halves "
-                "the motion beyond the contact position",
+                "stiffness of the contact, divided by the stiffness of the actuator in free motion; the "
+                "value 1 halves the motion beyond the contact position",
                 Typical{1.0}, Within{0.0, 1e6}, Scale{0.5}, Neutral{0.0})};
 
   Contact(std::span<const T> values, const Preparation&)

@@ -20,7 +20,7 @@ class CrescentHysteresis {
       "A hysteresis loop that is wide at medium pressure and closes at both ends.",
       "y += gain range (c - (x + l)/2); l = x/(1 + bend (1 - x)) <= c <= x = p/range");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "displacement per pressure of the loop width", Typical{0.02},
+      parameter("gain_mm_per_kpa", "mm/kPa", "displacement per kPa of the width of the loop", Typical{0.02},
                 Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
       parameter("bend", "",
                 "curvature of the lower envelope; the slope of this envelope at full range is 1 + bend",

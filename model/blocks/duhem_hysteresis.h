@@ -17,11 +17,12 @@ class DuhemHysteresis {
  public:
   static constexpr BlockInfo info =
       block_info("duhem_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Duhem hysteresis",
-                 "Hysteresis with different shapes for loading and unloading. The state grows during "
-                 "unloading and decays during loading.",
+                 "Hysteresis with different shapes for loading and unloading. The hysteretic state z grows "
+                 "during unloading and decays during loading.",
                  "y += gain z; falling: z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "displacement per pressure change at the start of unloading",
+      parameter("gain_mm_per_kpa", "mm/kPa",
+                "displacement per pressure change that the block adds at the start of unloading",
                 Typical{0.02}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
       parameter("unloading_kpa", "kPa", "pressure decrease over which the hysteretic state grows",
                 Typical{20.0}, Within{0.01, 10000.0}, Scale{5.0}),

@@ -17,7 +17,7 @@ class Inertia {
  public:
   static constexpr BlockInfo info =
       block_info("inertia", Station::load, Kind::displacement, Inverse::ignored, "Inertia",
-                 "Oscillation: a second-order mode of mass and spring.",
+                 "Oscillation of a mass and a spring, as a second-order mode.",
                  "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period");
   static constexpr std::array parameters{
       parameter("period_s", "s", "period of the undamped mode", Typical{0.1}, Within{0.0, 1e4}, Scale{0.05},

@@ -18,10 +18,10 @@ namespace softgrip::model {
 template <class T>
 class KelvinVoigt {
  public:
-  static constexpr BlockInfo info =
-      block_info("kelvin_voigt", Station::actuator, Kind::element, Inverse::implicit, "Kelvin-Voigt creep",
-                 "Creep: a spring in series with branches of spring and dashpot.",
-                 "y += p/k0 + x1 + x2 + ..., c x' = p - k x in every branch");
+  static constexpr BlockInfo info = block_info(
+      "kelvin_voigt", Station::actuator, Kind::element, Inverse::implicit, "Kelvin-Voigt creep",
+      "Creep: a spring in series with branches, each of which is a spring and a dashpot in parallel.",
+      "y += p/k0 + x1 + x2 + ..., c x' = p - k x in every branch");
   static constexpr std::array parameters{parameter("k0_kpa_per_mm", "kPa/mm",
                                                    "stiffness of the instantaneous spring", Typical{300.0},
                                                    Within{1e-3, 1e9}, Scale{50.0}, Neutral{1e9})};

@@ -11,14 +11,15 @@ namespace softgrip::model {
 template <class T>
 class Leak {
  public:
-  static constexpr BlockInfo info =
-      block_info("leak", Station::valve, Kind::pressure, Inverse::implicit, "Leak",
-                 "A steady flow through a leak at the finger causes a pressure drop along the line.",
-                 "u = p (1 + share a / (p + a)), a = 101.325 kPa; u = p + share (p + a) / 4 above a");
-  static constexpr std::array parameters{parameter(
-      "share", "",
-      "share of a small pressure that is lost: square of the ratio of the conductances of leak and line",
-      Typical{0.03}, Within{0.0, 10.0}, Scale{0.02}, Neutral{0.0})};
+  static constexpr BlockInfo info = block_info(
+      "leak", Station::valve, Kind::pressure, Inverse::implicit, "Leak",
+      "Because of the steady flow through a leak at the finger, the pressure drops along the air line.",
+      "u = p (1 + share a / (p + a)), a = 101.325 kPa; u = p + share (p + a) / 4 above a");
+  static constexpr std::array parameters{
+      parameter("share", "",
+                "fraction of a small pressure that is lost, equal to the square of the ratio of the "
+                "conductances of leak and air line",
+                Typical{0.03}, Within{0.0, 10.0}, Scale{0.02}, Neutral{0.0})};
 
   Leak(std::span<const T> values, const Preparation&) : loss_{values[0]} {}
 

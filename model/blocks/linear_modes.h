@@ -20,11 +20,11 @@ class LinearModes {
  public:
   static constexpr BlockInfo info =
       block_info("linear_modes", Station::actuator, Kind::element, Inverse::none, "Linear modes",
-                 "Linear dynamics: second-order modes in parallel, with gains of either sign.",
+                 "Linear dynamics: second-order modes in parallel, with positive or negative gains.",
                  "y += direct p + sum(gain z + lead z'/w), z'' + 2 d w z' + w^2 z = w^2 p, w = 2 pi/period");
-  static constexpr std::array parameters{parameter("direct_mm_per_kpa", "mm/kPa", "gain without delay",
-                                                   Typical{0.1}, Within{-1e4, 1e4}, Scale{0.1}, Neutral{0.0},
-                                                   PerPressure{})};
+  static constexpr std::array parameters{
+      parameter("direct_mm_per_kpa", "mm/kPa", "gain of the immediate response", Typical{0.1},
+                Within{-1e4, 1e4}, Scale{0.1}, Neutral{0.0}, PerPressure{})};
   static constexpr std::array repeated{
       parameter("period#_s", "s", "2 pi divided by the angular frequency of mode #", Typical{0.5},
                 Within{1e-6, 1e6}, Scale{0.2}, Latency{}),
@@ -33,7 +33,8 @@ class LinearModes {
                 Within{0.005, 100}, Scale{0.1}),
       parameter("gain#_mm_per_kpa", "mm/kPa", "static gain of mode #", Typical{0.05}, Within{-1e4, 1e4},
                 Scale{0.1}, Neutral{0.0}, PerPressure{}),
-      parameter("lead#_mm_per_kpa", "mm/kPa", "gain of mode # to the rate of change, divided by w",
+      parameter("lead#_mm_per_kpa", "mm/kPa",
+                "gain of mode # for z'/w, the rate of change of z divided by the angular frequency w",
                 Typical{-0.05}, Within{-1e4, 1e4}, Scale{0.1}, Neutral{0.0}, PerPressure{})};
   static constexpr std::size_t min_parts = 0;
   static constexpr std::size_t max_parts = 4;

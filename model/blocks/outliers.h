@@ -15,11 +15,11 @@ template <class T>
 class Outliers {
  public:
   static constexpr bool at_samples = false;
-  static constexpr BlockInfo info =
-      block_info("outliers", Station::sensor, Kind::reading, Inverse::ignored, "Outliers",
-                 "Isolated wrong samples.", "z = y ± size with the given probability");
+  static constexpr BlockInfo info = block_info("outliers", Station::sensor, Kind::reading, Inverse::ignored,
+                                               "Outliers", "Single wrong readings between correct readings.",
+                                               "z = y ± size with the given probability");
   static constexpr std::array parameters{
-      parameter("probability", "", "share of the readings that are wrong", Typical{0.01}, Within{0.0, 1.0},
+      parameter("probability", "", "fraction of the readings that are wrong", Typical{0.01}, Within{0.0, 1.0},
                 Scale{0.01}, Neutral{0.0}),
       parameter("size_mm", "mm", "error of the wrong readings", Typical{2.0}, Within{0.0, 1000.0},
                 Scale{1.0})};

@@ -14,16 +14,17 @@ namespace softgrip::model {
 template <class T>
 class PeriodicDisturbance {
  public:
-  static constexpr BlockInfo info =
-      block_info("periodic_disturbance", Station::sensor, Kind::reading, Inverse::ignored,
-                 "Periodic disturbance", "A steady oscillation that does not depend on the command.",
-                 "z = y + sine sin(2 pi f t) + cosine cos(2 pi f t)", Repeatable{});
+  static constexpr BlockInfo info = block_info(
+      "periodic_disturbance", Station::sensor, Kind::reading, Inverse::ignored, "Periodic disturbance",
+      "Oscillation of the reading with constant amplitude, independent of the commanded pressure.",
+      "z = y + sine sin(2 pi f t) + cosine cos(2 pi f t)", Repeatable{});
   static constexpr std::array parameters{
       parameter("sine_mm", "mm", "amplitude of the sine component", Typical{0.1}, Within{-100.0, 100.0},
                 Scale{0.1}, Neutral{0.0}),
       parameter("cosine_mm", "mm", "amplitude of the cosine component", Typical{0.0}, Within{-100.0, 100.0},
                 Scale{0.1}, Neutral{0.0}),
-      parameter("frequency_hz", "Hz", "frequency", Typical{5.0}, Within{0.001, 1000.0}, Scale{0.01})};
+      parameter("frequency_hz", "Hz", "frequency of the oscillation", Typical{5.0}, Within{0.001, 1000.0},
+                Scale{0.01})};
 
   PeriodicDisturbance(std::span<const T> values, const Preparation&)
       : sine_mm_(values[0]), cosine_mm_(values[1]), omega_(values[2] * (2.0 * std::numbers::pi)) {}

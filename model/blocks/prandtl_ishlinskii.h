@@ -31,12 +31,15 @@ class PrandtlIshlinskii {
       parameter("trained_kpa", "kPa",
                 "largest pressure before the start of the log; 0 if the finger was never loaded",
                 Typical{15.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0}),
-      parameter("envelope_bend", "", "if above 0, the envelope curves are steeper at high pressures",
+      parameter("envelope_bend", "",
+                "bend of the envelope curves; a value above 0 makes these curves steeper at high pressures",
                 Typical{0.0}, Within{-EnvelopeMap<double>::most_bend, EnvelopeMap<double>::most_bend},
                 Scale{0.1}, IfLeftOut{0.0}),
-      parameter("envelope_skew", "", "if above 0, the envelope curves are less steep at medium pressures",
-                Typical{0.0}, Within{-EnvelopeMap<double>::most_skew, EnvelopeMap<double>::most_skew},
-                Scale{0.1}, IfLeftOut{0.0}),
+      parameter(
+          "envelope_skew", "",
+          "skew of the envelope curves; a value above 0 makes these curves less steep at medium pressures",
+          Typical{0.0}, Within{-EnvelopeMap<double>::most_skew, EnvelopeMap<double>::most_skew}, Scale{0.1},
+          IfLeftOut{0.0}),
       parameter(
           "envelope_kpa", "kPa",
           "pressure at which the nonlinear range of the envelope curves ends; 0 for straight envelope curves",
@@ -45,7 +48,7 @@ class PrandtlIshlinskii {
                                                  "threshold of play operator #, above the threshold of the "
                                                  "previous operator; 0 for an elastic element",
                                                  Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
-                                       parameter("w#_mm_per_kpa", "mm/kPa", "weight of operator #",
+                                       parameter("w#_mm_per_kpa", "mm/kPa", "weight of play operator #",
                                                  Typical{0.1}, Within{0.0, 1e4}, Scale{0.1}, Neutral{0.0})};
   static constexpr std::size_t max_parts = 24;
 

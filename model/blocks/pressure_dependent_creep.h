@@ -28,7 +28,7 @@ class PressureDependentCreep {
       parameter("hinge#_kpa", "kPa", "threshold pressure above which branch # creeps", Typical{20.0},
                 Within{0.0, 1e4}, Scale{5.0}, Placed{}),
       parameter("compliance#_mm_per_kpa", "mm/kPa",
-                "final creep of branch # per pressure above the threshold pressure", Typical{0.05},
+                "final creep displacement of branch #, per kPa above the threshold pressure", Typical{0.05},
                 Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}),
       parameter("time_constant#_s", "s", "time constant of branch #", Typical{5.0}, Within{1e-3, 1e6},
                 Scale{2.0}, Placed{})};

@@ -10,12 +10,13 @@ namespace softgrip::model {
 template <class T>
 class PressureSaturation {
  public:
-  static constexpr BlockInfo info = block_info(
-      "pressure_saturation", Station::valve, Kind::pressure, Inverse::bound, "Pressure saturation",
-      "The pressure does not exceed a highest value, even if the command is higher.", "p = min(u, limit)");
-  static constexpr std::array parameters{parameter("limit_kpa", "kPa", "highest pressure the valve reaches",
-                                                   Typical{100.0}, Within{0.0, 10000.0}, Scale{5.0},
-                                                   Neutral{10000.0})};
+  static constexpr BlockInfo info =
+      block_info("pressure_saturation", Station::valve, Kind::pressure, Inverse::bound, "Pressure saturation",
+                 "The pressure never exceeds a limit, even if the commanded pressure exceeds this limit.",
+                 "p = min(u, limit)");
+  static constexpr std::array parameters{parameter("limit_kpa", "kPa",
+                                                   "highest pressure that the valve reaches", Typical{100.0},
+                                                   Within{0.0, 10000.0}, Scale{5.0}, Neutral{10000.0})};
 
   PressureSaturation(std::span<const T> values, const Preparation&) : limit_kpa_(values[0]) {}
 

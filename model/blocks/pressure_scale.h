@@ -11,7 +11,7 @@ class PressureScale {
  public:
   static constexpr BlockInfo info =
       block_info("pressure_scale", Station::valve, Kind::pressure, Inverse::implicit, "Pressure scale",
-                 "The pressure is a fixed multiple of the command.", "p = scale u");
+                 "The pressure is a fixed multiple of the commanded pressure.", "p = scale u");
   static constexpr std::array parameters{parameter("scale", "", "pressure per commanded kPa", Typical{0.97},
                                                    Within{0.05, 20.0}, Scale{0.02}, Neutral{1.0})};
 

@@ -30,7 +30,7 @@ class PseudoElasticSoftening {
                 "relative increase of the gain per kPa of the largest previous pressure", Typical{0.002},
                 Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
       parameter("range_kpa", "kPa",
-                "pressure range below the largest previous pressure over which the softening begins",
+                "distance below the largest previous pressure over which the softening develops",
                 Typical{15.0}, Within{0.01, 10000.0}, Scale{5.0})};
 
   PseudoElasticSoftening(std::span<const T> values, const Preparation&)

@@ -12,11 +12,12 @@ namespace softgrip::model {
 template <class T>
 class Quantisation {
  public:
-  static constexpr BlockInfo info =
-      block_info("quantisation", Station::sensor, Kind::reading, Inverse::ignored, "Quantisation",
-                 "The reading has the finite resolution of the converter.", "z = step round(y/step)");
-  static constexpr std::array parameters{parameter("step_mm", "mm", "size of one step", Typical{0.01},
-                                                   Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0})};
+  static constexpr BlockInfo info = block_info(
+      "quantisation", Station::sensor, Kind::reading, Inverse::ignored, "Quantisation",
+      "The reading has the finite resolution of the analog-to-digital converter.", "z = step round(y/step)");
+  static constexpr std::array parameters{parameter("step_mm", "mm", "size of one quantisation step",
+                                                   Typical{0.01}, Within{0.0, 10.0}, Scale{0.01},
+                                                   Neutral{0.0})};
 
   Quantisation(std::span<const T> values, const Preparation&) : step_mm_(value_of(values[0])) {}
 

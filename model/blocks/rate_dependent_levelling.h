@@ -14,16 +14,18 @@ class RateDependentLevelling : public BoucWenPart<T> {
   static constexpr BlockInfo info = block_info(
       "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
       "Rate-dependent saturation",
-      "The width of the hysteresis loop depends on the rate of the pressure, because bouc_wen saturates "
-      "earlier at high rates.",
+      "The width of the hysteresis loop depends on the rate of pressure change, because bouc_wen saturates "
+      "at a smaller amplitude if the rate of pressure change is high.",
       "bouc_wen: eta is replaced by eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");  // words-ok
   static constexpr std::array parameters{
-      parameter("levelling", "", "largest relative increase of eta of bouc_wen, reached at high rates",
-                Typical{0.2}, Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter(
+          "levelling", "",
+          "largest relative increase of eta of bouc_wen, which is reached at high rates of pressure change",
+          Typical{0.2}, Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
       parameter("rate_kpa_per_s", "kPa/s",
-                "rate of the pressure at which half of the largest increase is reached", Typical{20.0},
+                "rate of pressure change at which half of the largest increase is reached", Typical{20.0},
                 Within{0.01, 1e5}, Scale{10.0}, IfLeftOut{20.0}),
-      parameter("settling_s", "s", "time constant with which the rate of the pressure is averaged",
+      parameter("settling_s", "s", "time constant with which the rate of pressure change is averaged",
                 Typical{0.05}, Within{1e-3, 100.0}, Scale{0.05}, IfLeftOut{0.05})};
 
   RateDependentLevelling(std::span<const T> values, const Preparation&)

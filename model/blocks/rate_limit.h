@@ -16,7 +16,7 @@ class RateLimit {
  public:
   static constexpr BlockInfo info =
       block_info("rate_limit", Station::valve, Kind::pressure, Inverse::bound, "Rate limit",
-                 "The rate of change of the pressure is limited.",
+                 "The pressure follows the commanded pressure at a limited rate.",
                  "p follows u, -1 / venting_s_per_kpa <= p' <= 1 / filling_s_per_kpa");
   static constexpr std::array parameters{
       parameter("filling_s_per_kpa", "s/kPa", "shortest time in which the pressure rises by 1 kPa",

@@ -15,16 +15,16 @@ namespace softgrip::model {
 template <class T>
 class RelaxingFriction {
  public:
-  static constexpr BlockInfo info = block_info("relaxing_friction", Station::actuator, Kind::element,
-                                               Inverse::implicit, "Relaxing friction",
-                                               "The width of the hysteresis loop depends on the rate of the "
-                                               "pressure, because the friction force relaxes with time.",
-                                               "y -= gain z, z' = p' - z (|p'|/width + 1/tau)");
+  static constexpr BlockInfo info = block_info(
+      "relaxing_friction", Station::actuator, Kind::element, Inverse::implicit, "Relaxing friction",
+      "The width of the hysteresis loop depends on the rate of pressure change, because the friction force "
+      "relaxes with time.",
+      "y -= gain z, z' = p' - z (|p'|/width + 1/tau)");
   static constexpr std::array parameters{
       parameter("gain_mm_per_kpa", "mm/kPa",
-                "displacement per pressure that friction holds back after a reversal", Typical{0.03},
-                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
-      parameter("width_kpa", "kPa", "largest value of z, reached at high rates of the pressure",
+                "displacement per pressure by which friction reduces the motion after a reversal",
+                Typical{0.03}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("width_kpa", "kPa", "largest value of z, which is reached at high rates of pressure change",
                 Typical{10.0}, Within{0.01, 10000.0}, Scale{5.0}),
       parameter("time_constant_s", "s", "time constant with which z relaxes", Typical{1.0}, Within{1e-3, 1e4},
                 Scale{0.5})};

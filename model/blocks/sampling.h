@@ -11,10 +11,10 @@ namespace softgrip::model {
 template <class T>
 class Sampling {
  public:
-  static constexpr BlockInfo info =
-      block_info("sampling", Station::sensor, Kind::reading, Inverse::ignored, "Sampling",
-                 "The sensor updates the reading less often than the log records a sample.",
-                 "z(t) = y(interval floor(t/interval))");
+  static constexpr BlockInfo info = block_info(
+      "sampling", Station::sensor, Kind::reading, Inverse::ignored, "Sampling",
+      "The interval between two updates of the sensor reading is longer than the sample interval of the log.",
+      "z(t) = y(interval floor(t/interval))");
   static constexpr std::array parameters{parameter("interval_s", "s",
                                                    "time between two updates of the reading", Typical{0.1},
                                                    Within{0.0, 100.0}, Scale{0.05}, Neutral{0.0})};

@@ -14,11 +14,11 @@ namespace softgrip::model {
 template <class T>
 class SensorFreeDrift {
  public:
-  static constexpr BlockInfo info =
-      block_info("sensor_free_drift", Station::sensor, Kind::reading, Inverse::ignored, "Free sensor drift",
-                 "The zero offset of the sensor drifts along straight lines between knots.",
-                 "z = y + straight lines through knot1, knot2 ... every interval");
-  static constexpr std::array parameters{parameter("knot_interval_s", "s", "time between knots",
+  static constexpr BlockInfo info = block_info(
+      "sensor_free_drift", Station::sensor, Kind::reading, Inverse::ignored, "Free sensor drift",
+      "The zero offset of the sensor is a piecewise linear function of time, with knots at equal intervals.",
+      "z = y + straight lines through knot1, knot2 ... every interval");
+  static constexpr std::array parameters{parameter("knot_interval_s", "s", "time between two knots",
                                                    Typical{30.0}, Within{0.1, 1e5}, Scale{10.0},
                                                    IfLeftOut{30.0})};
   static constexpr std::array repeated{

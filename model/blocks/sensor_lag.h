@@ -14,10 +14,10 @@ class SensorLag {
  public:
   static constexpr BlockInfo info =
       block_info("sensor_lag", Station::sensor, Kind::displacement, Inverse::ignored, "Sensor lag",
-                 "The reading lags the displacement.", "tau z' = y - z");
-  static constexpr std::array parameters{parameter("time_constant_s", "s", "time constant of the sensor",
-                                                   Typical{0.02}, Within{0.0, 1e4}, Scale{0.02}, Neutral{0.0},
-                                                   Latency{})};
+                 "The reading follows the displacement with a first-order lag.", "tau z' = y - z");
+  static constexpr std::array parameters{parameter("time_constant_s", "s",
+                                                   "time constant of the lag of the sensor", Typical{0.02},
+                                                   Within{0.0, 1e4}, Scale{0.02}, Neutral{0.0}, Latency{})};
 
   SensorLag(std::span<const T> values, const Preparation& preparation)
       : time_constant_s_(values[0]), weights_(1) {

@@ -22,7 +22,8 @@ class SensorNoise {
   static constexpr std::array parameters{
       parameter("rms_mm", "mm", "root mean square of the noise", Typical{0.05}, Within{0.0, 100.0},
                 Scale{0.05}, Neutral{0.0}),
-      parameter("correlation_time_s", "s", "correlation time of the noise; 0 for independent readings",
+      parameter("correlation_time_s", "s",
+                "correlation time of the noise; 0 for noise that is independent from reading to reading",
                 Typical{0.0}, Within{0.0, 1000.0}, Scale{0.05})};
 
   SensorNoise(std::span<const T> values, const Preparation& preparation)

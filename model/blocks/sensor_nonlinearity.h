@@ -18,11 +18,12 @@ class SensorNonlinearity {
       "The scale of the sensor is nonlinear between its two calibration points.",
       "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range");
   static constexpr std::array parameters{
-      parameter("bow_mm", "mm", "error of the reading in the middle of the range", Typical{0.2},
-                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("bow_mm", "mm", "error of the reading in the middle between the two calibration points",
+                Typical{0.2}, Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
       parameter("wave_mm", "mm",
-                "largest error of the reading in each half of the range, with opposite signs", Typical{0.0},
-                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
+                "largest error of the reading in each half of the calibrated range; the errors in the two "
+                "halves have opposite signs",
+                Typical{0.0}, Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
       parameter("range_mm", "mm",
                 "displacement at the upper calibration point; the lower calibration point is at 0",
                 Typical{30.0}, Within{0.1, 1000.0}, Scale{10.0})};

@@ -15,10 +15,11 @@ class SensorWarmUp {
   static constexpr BlockInfo info = block_info(
       "sensor_warm_up", Station::sensor, Kind::reading, Inverse::ignored, "Sensor warm-up",
       "The zero offset of the sensor drifts while the sensor warms up.", "z = y + warm_up (1 - exp(-t/tau))");
-  static constexpr std::array parameters{parameter("warm_up_mm", "mm", "drift during warm-up", Typical{0.2},
-                                                   Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
-                                         parameter("warm_up_time_s", "s", "time constant of the warm-up",
-                                                   Typical{60.0}, Within{0.1, 1e5}, Scale{30.0})};
+  static constexpr std::array parameters{
+      parameter("warm_up_mm", "mm", "total drift of the zero offset during warm-up", Typical{0.2},
+                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("warm_up_time_s", "s", "time constant of the warm-up", Typical{60.0}, Within{0.1, 1e5},
+                Scale{30.0})};
 
   SensorWarmUp(std::span<const T> values, const Preparation&) : warm_up_mm_(values[0]), time_s_(values[1]) {}
 

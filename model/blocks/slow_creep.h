@@ -17,8 +17,8 @@ class SlowCreep {
       block_info("slow_creep", Station::actuator, Kind::element, Inverse::implicit, "Slow creep",
                  "Creep that is slower than the slowest creep branch of the model.", "tau x' = gain p - x");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "final creep per pressure", Typical{0.05}, Within{-10.0, 10.0},
-                Scale{0.02}, Neutral{0.0}),
+      parameter("gain_mm_per_kpa", "mm/kPa", "final creep displacement per pressure", Typical{0.05},
+                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
       parameter("time_constant_s", "s", "time constant of the creep", Typical{60.0}, Within{0.1, 1e6},
                 Scale{30.0})};
 

@@ -16,12 +16,13 @@ class Stiffening {
   static constexpr bool at_samples = true;
   static constexpr BlockInfo info =
       block_info("stiffening", Station::actuator, Kind::displacement, Inverse::implicit, "Stiffening",
-                 "The gain changes with the displacement in the same way for loading and unloading.",
+                 "The gain of the finger depends on the displacement, equally for loading and unloading.",
                  "z = y / (1 + s |y|), for negative s: y (1 - s |y|)");
-  static constexpr std::array parameters{parameter(
-      "stiffening_per_mm", "1/mm",
-      "relative decrease of the secant gain per displacement; the tangent gain decreases twice as much",
-      Typical{0.01}, Within{-1.0, 1.0}, Scale{0.005}, Neutral{0.0})};
+  static constexpr std::array parameters{
+      parameter("stiffening_per_mm", "1/mm",
+                "relative decrease of the secant gain per mm of displacement; the relative decrease of the "
+                "tangent gain is twice as large",
+                Typical{0.01}, Within{-1.0, 1.0}, Scale{0.005}, Neutral{0.0})};
 
   Stiffening(std::span<const T> values, const Preparation&) : stiffening_per_mm_(values[0]) {}
 

@@ -17,14 +17,16 @@ class StressSoftening {
  public:
   static constexpr BlockInfo info = block_info(
       "stress_softening", Station::actuator, Kind::pressure, Inverse::implicit, "Stress softening",
-      "The finger becomes permanently softer with the largest pressure that was ever applied (Mullins "
+      "The finger becomes permanently softer when the pressure exceeds its largest previous value (Mullins "
       "effect).",
       "q = p (1 + softening m/(1 + levelling m)), m = largest pressure so far");  // words-ok: a key
   static constexpr std::array parameters{
       parameter("softening_per_kpa", "1/kPa",
                 "relative increase of the gain per kPa of the largest previous pressure", Typical{0.002},
                 Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
-      parameter("levelling_per_kpa", "1/kPa", "saturation of the softening at higher pressures",
+      parameter("levelling_per_kpa", "1/kPa",
+                "saturation of the softening: with a value above 0, the softening approaches a limit at high "
+                "pressures",
                 Typical{0.02}, Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0}, IfLeftOut{0.0})};
 
   StressSoftening(std::span<const T> values, const Preparation&)

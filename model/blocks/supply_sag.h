@@ -15,15 +15,15 @@ class SupplySag {
  public:
   static constexpr BlockInfo info =
       block_info("supply_sag", Station::valve, Kind::pressure, Inverse::ignored, "Supply sag",
-                 "The pressure decreases if the supply falls below its nominal value.",
+                 "The pressure decreases if the supply pressure falls below its nominal value.",
                  "p = u (1 - coupling max(0, 1 - supply/nominal))");
   static constexpr std::array parameters{
       parameter("coupling", "",
                 "relative decrease of the pressure per relative decrease of the supply pressure",
                 Typical{0.2}, Within{0.0, 1.0}, Scale{0.1}, Neutral{0.0}),
       parameter("nominal_kpa", "kPa",
-                "nominal supply pressure; at this and at every higher supply pressure, the block does not "
-                "reduce the pressure",
+                "nominal supply pressure; at the nominal and at every higher supply pressure, the block does "
+                "not reduce the pressure",
                 Typical{500.0}, Within{1.0, 10000.0}, Scale{50.0})};
 
   SupplySag(std::span<const T> values, const Preparation&) : coupling_(values[0]), nominal_kpa_(values[1]) {}

@@ -12,9 +12,10 @@ namespace softgrip::model {
 template <class T>
 class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {
  public:
-  static constexpr BlockInfo info = block_info(
-      "thermal_gain", Station::actuator, Kind::displacement, Inverse::implicit, "Thermal gain",
-      "The gain depends on the temperature.", "z = y (1 + gain (temperature - 20 degC)), kept positive");
+  static constexpr BlockInfo info =
+      block_info("thermal_gain", Station::actuator, Kind::displacement, Inverse::implicit, "Thermal gain",
+                 "The gain of the finger depends on the temperature.",
+                 "z = y (1 + gain (temperature - 20 degC)), kept positive");
   static constexpr std::array parameters{
       parameter("gain_per_c", "1/degC", "relative change of the gain per degree Celsius above 20 degC",
                 Typical{0.005}, Within{-0.2, 0.2}, Scale{0.002}, Neutral{0.0})};

@@ -20,7 +20,7 @@ class TransportDelay {
  public:
   static constexpr BlockInfo info =
       block_info("transport_delay", Station::valve, Kind::pressure, Inverse::preview, "Transport delay",
-                 "Dead time between command and pressure.", "p(t) = u(t - delay)");
+                 "Dead time between commanded pressure and pressure.", "p(t) = u(t - delay)");
   static constexpr std::array parameters{parameter(
       "delay_s", "s", "dead time", Typical{0.05}, Within{0.0, 1000.0}, Scale{0.05}, Neutral{0.0}, Latency{})};
 

@@ -12,13 +12,13 @@ namespace softgrip::model {
 template <class T>
 class ValveDeadband {
  public:
-  static constexpr BlockInfo info =
-      block_info("valve_deadband", Station::valve, Kind::pressure, Inverse::play, "Valve dead band",
-                 "The valve ignores changes of the command smaller than a band.",
-                 "|u - p| <= band/2; p moves only to keep this condition");
-  static constexpr std::array parameters{
-      parameter("band_kpa", "kPa", "largest change of the command that is ignored after a reversal",
-                Typical{1.0}, Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
+  static constexpr BlockInfo info = block_info(
+      "valve_deadband", Station::valve, Kind::pressure, Inverse::play, "Valve dead band",
+      "After a reversal, the valve ignores changes of the commanded pressure that are smaller than a band.",
+      "|u - p| <= band/2; p moves only to keep this condition");
+  static constexpr std::array parameters{parameter(
+      "band_kpa", "kPa", "largest change of the commanded pressure that the valve ignores after a reversal",
+      Typical{1.0}, Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
 
   ValveDeadband(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
 

@@ -20,12 +20,12 @@ class ValveStiction {
  public:
   static constexpr BlockInfo info =
       block_info("valve_stiction", Station::valve, Kind::pressure, Inverse::ignored, "Valve stiction",
-                 "The valve sticks until the command differs from the pressure by more than a band. Then the "
-                 "pressure jumps to the command.",
+                 "The valve sticks until the commanded pressure differs from the pressure by more than a "
+                 "band. When the valve moves, the pressure jumps to the commanded pressure.",
                  "p stays until |u - p| > band, then p = u");
-  static constexpr std::array parameters{
-      parameter("band_kpa", "kPa", "change of the command at which the valve jumps", Typical{1.0},
-                Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
+  static constexpr std::array parameters{parameter(
+      "band_kpa", "kPa", "difference between commanded pressure and pressure at which the pressure jumps",
+      Typical{1.0}, Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
   /// Shortest time in which a spool can move and come to rest again [s].
   static constexpr double rest_s = 2e-3;
 

@@ -16,7 +16,7 @@ class Wear {
  public:
   static constexpr BlockInfo info =
       block_info("wear", Station::actuator, Kind::displacement, Inverse::implicit, "Wear",
-                 "The gain drifts with the travel of the finger.",
+                 "The gain of the finger changes with the total travel of the finger.",
                  "z = y (1 + gain l), l = travel so far; kept positive");
   static constexpr std::array parameters{
       parameter("gain_per_m", "1/m", "relative change of the gain per metre of travel", Typical{0.05},

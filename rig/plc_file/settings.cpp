@@ -26,27 +26,31 @@ struct PlcKeys {
 const PlcKeys& plc_keys() {
   using S = Settings;
   static const PlcKeys keys{
-      {required("name", &S::name, {}, "name of this file in messages"),
-       required("socket", &S::socket, {}, "socket of softgripd"),
+      {required("name", &S::name, {}, "name that messages use for this file"),
+       required("socket", &S::socket, {}, "path of the socket of softgripd"),
        {"listen", "map", "", "address of the server"},
-       {"master", "map", "", "monitoring of the heartbeat of the Modbus client (master)"},
+       {"master", "map", "", "settings for the monitoring of the heartbeat of the Modbus client (master)"},
        {"recipes", "list", "", "sequences that the Modbus client (master) starts by number"},
        {"registers", "map", "",
-        "map of the registers; the address and the resolution of each register may be changed"}},
-      {required("address", &S::address, {}, "numeric address of the server"),
+        "map of the registers; you may change the address and the resolution of each register"}},
+      {required("address", &S::address, {}, "numeric address on which softgrip-plc listens"),
        required("port", &S::port, {0, 65535}, "port of the server"),
-       {"allow", "list", "", "numeric addresses of the permitted masters"},
+       {"allow", "list", "", "numeric addresses of the masters that may connect"},
        optional("max_masters", &S::max_masters, {1, 32}, "largest number of [connections](#connections)"),
        optional("idle_s", &S::idle_s, {1, 3600},
-                "time without a request after which a connection is closed")},
+                "time without a request after which softgrip-plc closes a connection")},
       {required("silence_s", &S::silence_s, {0.05, 60},
-                "time limit of the master's [heartbeat](#heartbeats)"),
-       required("when_silent", &S::when_silent, reaction_names, "reaction if the heartbeat stops")},
-      {required("number", &Recipe::number, {1, 65535}, "number of the recipe"),
-       required("sequence", &Recipe::sequence, {}, "name in the daemon's sequence directory"),
-       optional("squeeze", &Recipe::squeeze, {}, "parameter `..._kpa` that the register `squeeze` sets"),
-       optional("speed", &Recipe::speed, {}, "parameter `..._mm_per_s` that the register `speed` sets"),
-       optional("displacement", &Recipe::displacement, {}, "parameter `..._mm` that `displacement` sets")}};
+                "longest permitted time between two changes of the master's [heartbeat](#heartbeats)"),
+       required("when_silent", &S::when_silent, reaction_names,
+                "command that softgrip-plc sends to the daemon if the heartbeat of the master stops")},
+      {required("number", &Recipe::number, {1, 65535}, "number with which the master selects the recipe"),
+       required("sequence", &Recipe::sequence, {}, "name of the sequence in the daemon's sequence directory"),
+       optional("squeeze", &Recipe::squeeze, {},
+                "name of the sequence parameter (`..._kpa`) that the register `squeeze` sets"),
+       optional("speed", &Recipe::speed, {},
+                "name of the sequence parameter (`..._mm_per_s`) that the register `speed` sets"),
+       optional("displacement", &Recipe::displacement, {},
+                "name of the sequence parameter (`..._mm`) that the register `displacement` sets")}};
   return keys;
 }
 
