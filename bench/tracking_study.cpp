@@ -177,8 +177,10 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
     exact.seed = derived_seed(options.seed, 9999);
     const double sensitivity = control::loop_margins(finger, pid, {0, 60}, tick_s, tick_s).sensitivity;
     std::printf(
-        "  %.2f Hz: RMSE %.4f mm [%.4f, %.4f], worst %.3f mm, model exact %.4f mm; "
-        "kp %.4g ki %.4g kd %.3g, Ms %.2f; model residual %.3f mm, cut %.1f %%, out of reach %.1f %%\n",
+        "  %.2f Hz: RMSE: median %.4f mm (5 %% to 95 %% quantile: %.4f to %.4f mm); "
+        "largest error: median %.3f mm; RMSE with the exact model: %.4f mm; "
+        "kp %.4g, ki %.4g, kd %.3g, sensitivity Ms %.2f; RMS of the model residual: median %.3f mm; "
+        "command limited in %.1f %%, reference out of reach in %.1f %% of the ticks\n",
         frequency, quantile(rmse, 0.5), quantile(rmse, 0.05), quantile(rmse, 0.95), quantile(worst, 0.5),
         control::track(exact).rmse_mm, pid.kp_kpa_per_mm, pid.ki_kpa_per_mm_s, pid.kd_kpa_s_per_mm,
         sensitivity, quantile(residual, 0.5), 100 * cut, 100 * reach);

@@ -189,8 +189,8 @@ class BoardReader {
     map_.read_back = block;
   }
 
-  /// Reads one write. If `heartbeat` is true, the write may have a second value: the board then gets the two
-  /// values alternately.
+  /// Parses the entry of one write to a register or coil. If `heartbeat` is true, the entry may contain a
+  /// second value. The two values are then written to the board alternately.
   drivers::FixedWrite fixed_write(const Node& node, const std::string& what, bool heartbeat = false) {
     MapReader in(document_, node, problems_, what);
     drivers::FixedWrite write;

@@ -121,8 +121,8 @@ class PlannedFeedforward {
                      const LimitSettings& limits, double tick_s);
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
-  /// Returns the preview [s]. The preview is longer than the dead time, because the commands of a plan change
-  /// before its reference changes.
+  /// Returns the preview [s]: how far ahead of the present time the reference must be known. The preview is
+  /// longer than the dead time, because a plan starts to change the command before the reference changes.
   [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + plan_lead_s; }
 
  private:

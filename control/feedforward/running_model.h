@@ -38,11 +38,11 @@ class RunningModel {
 
   /// Returns how far the chain is ahead of the finger: the sum of the dead times and the extra latency [s].
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
-  /// Returns the pressure at the actuator at the time ahead_s() from now [kPa].
+  /// Returns the pressure that the actuator will have in ahead_s() seconds [kPa].
   [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
-  /// Returns the valve blocks of the model without dead times, in the state at the time ahead_s() from now.
+  /// Returns the valve blocks of the model without dead times, in their state in ahead_s() seconds.
   [[nodiscard]] const model::Chain<double>& valve() const noexcept { return valve_; }
-  /// Returns the blocks after the valve, in the state at the time ahead_s() from now.
+  /// Returns the blocks after the valve, in their state in ahead_s() seconds.
   [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
 
  private:

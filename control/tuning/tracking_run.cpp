@@ -53,8 +53,8 @@ class Bench {
         finger_(run.finger, {}, tick_s_, run.seed),
         seed_(derived_seed(run.seed, 1)) {}
 
-  /// Advances the simulation to the exchange of the tick and writes the command in this exchange. Returns the
-  /// reading of the same exchange.
+  /// Simulates the tick from its start to its exchange with the board. In the exchange, the board gets
+  /// `command_kpa` as its output. Returns the reading that the board sends in this exchange.
   double exchange(double command_kpa) {
     if (exchange_s_ > 0) finger_.step(exchange_s_, out_kpa_);
     out_kpa_ = quantised(command_kpa, run_.command_step_kpa);

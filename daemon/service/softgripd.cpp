@@ -78,10 +78,12 @@ void declare(CLI::App& program, Arguments& arguments) {
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or sequence refused, 4 I/O, 5 the rig's state "
       "does not\n"
-      "allow the sequence, 6 the sequence was not completed. After SIGINT, SIGTERM or another ending\n"
-      "signal, softgripd writes and confirms the safe outputs, closes the recording and ends with 0.\n"
-      "With --sequence or --duration-s, it ends by the received signal instead of with 0.\n"
-      "softgripd reads the configuration only at the start: restart it after a change.");
+      "allow the sequence, 6 the sequence was not completed.\n"
+      "If a signal such as SIGINT or SIGTERM ends softgripd, softgripd first writes and confirms the\n"
+      "safe outputs and closes the recording. It then ends with exit code 0. With --sequence or\n"
+      "--duration-s, it ends by the received signal and not with exit code 0.\n"
+      "softgripd reads the configuration only when it starts. Restart softgripd after each change of\n"
+      "the configuration.");
 }
 
 /// Writes a message to the standard error. If the standard error cannot be written, the message is lost.

@@ -131,12 +131,12 @@ std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
   return {FilterKind::finger, FilterKind::valve_and_finger};
 }
 
-/// The fit of a candidate to all records, and its residuals in the cross-validation. Each residual belongs to
-/// a fit that leaves out one unit.
+/// Results of the fits of one candidate. The candidate is fitted to all records, and once without each
+/// cross-validation unit (sysid/evidence/units.h).
 struct Fitted {
   std::vector<Record> driven;
   model::Model model;  ///< model that was fitted to all records
-  LeftByUnit left;
+  LeftByUnit left;     ///< residuals of each fit
 };
 std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector<Record>& records,
                             const Base& base, unsigned threads) {

@@ -36,9 +36,9 @@ struct FreeParameter {
 };
 
 /// Returns true if a fit of a model structure may change this parameter. Exponents and parameters on a fixed
-/// grid, such as thresholds, are not changed. Envelope parameters are fixed if the operators have no
-/// envelope. The spring k0 is fixed if the hysteresis has an instantaneous gain, because the data determine
-/// only the sum of that gain and 1/k0.
+/// grid, such as thresholds, are not changed. The shape parameters of the envelope are not changed if the
+/// play operators of the model have no envelope. The spring k0 is fixed if the hysteresis has an
+/// instantaneous gain, because the data determine only the sum of that gain and 1/k0.
 [[nodiscard]] bool is_movable(const model::Model& model, std::size_t flat_index);
 
 /// A point of a search: a complete model, and the initial state of each record.

@@ -111,8 +111,8 @@ struct FingerHealth {
                                                           ///< the units of the indicators
   std::vector<HealthPoint> points;
   std::vector<HealthAlarm> alarms;  ///< alarms of the whole history, ordered by the time of detection
-  /// Differences from the peer fingers that have changed since the last maintenance record and whose change
-  /// is not attributed to a finger.
+  /// Changes of the difference between this finger and its peer fingers since the last maintenance record. A
+  /// change is listed only if it is unknown which of the fingers has changed.
   std::vector<HealthAlarm> unclear;
   std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
   /// Maintenance records, each with the index of the first point after it.

@@ -154,8 +154,9 @@ ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point,
   return values;
 }
 
-/// Repeats the comparison of the finger with other fingers for all points since its last maintenance record,
-/// with `peers` as the peer fingers.
+/// Replaces the peer fingers of the finger by `peers`, and starts a new control chart of the difference
+/// between finger and peer fingers. Adds all points since the last maintenance record of the finger to the
+/// new chart.
 void NumberWatch::compare_again(std::size_t finger, PeerFingers peers) {
   note_differences(finger);
   Watched& watched = watched_[finger];

@@ -86,7 +86,7 @@ class RunningReference {
  private:
   [[nodiscard]] std::optional<TemperatureSlope> found_slope() const;
 
-  SerialSums all_;   ///< sums over all values, with x = 0
+  SerialSums all_;   ///< sums over all values; x is not used and is always 0
   SerialSums warm_;  ///< sums over the values with a known temperature; x is the temperature
   double lowest_c_ = std::numeric_limits<double>::infinity();
   double highest_c_ = -std::numeric_limits<double>::infinity();

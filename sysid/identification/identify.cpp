@@ -92,7 +92,7 @@ class Run {
         std::min_element(found.begin(), found.end(),
                          [](const SearchResult& a, const SearchResult& b) { return a.rmse_mm < b.rmse_mm; });
     if (!std::isfinite(best->rmse_mm))
-      return Failure("the prediction of the model is not finite from any start point");
+      return Failure("the prediction of the model is infinite or NaN for every start point of the fit");
     for (const SearchResult& each : found) result_.multistart.rmse_mm.push_back(each.rmse_mm);
     order_branches(branch_time_constants_s(start_), best->point);
     polish(best->point, *free);

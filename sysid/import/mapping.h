@@ -43,8 +43,9 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
   return roles[static_cast<std::size_t>(role)];
 }
 
-/// Source of the values of a role. The value in the log is (value in the column - zero). This difference is
-/// converted from `unit` to the unit of the log, or multiplied by `scale`.
+/// Source of the values of a role. To compute a value of the log, `zero` is subtracted from the value in the
+/// column. If `scale` is set, the difference is then multiplied by `scale`. Otherwise, the difference is
+/// converted from `unit` to the unit of the log.
 struct ColumnMapping {
   /// Names of the columns, or their numbers counted from 1; empty: no column has the role. Several columns
   /// are averaged. Several time columns are not averaged: each time column applies to its own value columns

@@ -242,8 +242,9 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
-         "use --time COLUMN to select one time column for all values. If --time is given twice, each time "
-         "column applies to the value columns that its name or its position indicates"});
+         "use --time COLUMN to select one time column for all value columns. To use two time columns, give "
+         "--time twice: a time column applies to the values that its name mentions, or to the columns on its "
+         "right"});
     return;
   }
   time.columns.clear();

@@ -90,7 +90,7 @@ class UnusedParts {
     for (std::size_t i = 0; i < names.size(); i += names_a_note) {
       const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(i + names_a_note, names.size()));
       remarks_.notes.push_back(
-          "not used: " +
+          "unused columns: " +
           with_commas(std::vector<std::string>(names.begin() + static_cast<std::ptrdiff_t>(i), end),
                       [](const std::string& name) { return name; }));
     }

@@ -24,31 +24,31 @@ constexpr std::array pressures{UnitFactor{6.894757, "psi and kPa"}, UnitFactor{1
 // is nearly proportional to the pressure. Therefore, if a wrong unit makes the pressure values too small, the
 // readings seem too large.
 constexpr std::array mistakes{
-    UnitFactor{6.894757, "psi in a pressure column read as kPa"},
-    UnitFactor{100, "bar in a pressure column read as kPa"},
+    UnitFactor{6.894757, "a pressure column in psi was read as kPa"},
+    UnitFactor{100, "a pressure column in bar was read as kPa"},
     UnitFactor{1000,
-               "micrometres in the displacement column read as mm, or MPa in a pressure column taken "
-               "for kPa"},
-    UnitFactor{10, "millimetres in the displacement column converted as if the values were in cm"},
-    UnitFactor{25.4, "millimetres in the displacement column converted as if the values were in inch"},
+               "the displacement column in micrometres was read as mm, or a pressure column in MPa was "
+               "read as kPa"},
+    UnitFactor{10, "the displacement column in mm was converted as if its unit were cm"},
+    UnitFactor{25.4, "the displacement column in mm was converted as if its unit were inch"},
     UnitFactor{1 / 10.0,
-               "cm in the displacement column read as mm, or mbar in a pressure column read as "
+               "the displacement column in cm was read as mm, or a pressure column in mbar was read as "
                "kPa"},
-    UnitFactor{1 / 25.4, "inch in the displacement column read as mm"},
-    UnitFactor{1 / 6.894757, "kPa in a pressure column read as psi"},
-    UnitFactor{1 / 100.0, "kPa in a pressure column read as bar"},
+    UnitFactor{1 / 25.4, "the displacement column in inch was read as mm"},
+    UnitFactor{1 / 6.894757, "a pressure column in kPa was read as psi"},
+    UnitFactor{1 / 100.0, "a pressure column in kPa was read as bar"},
     UnitFactor{1 / 1000.0,
-               "metres in the displacement column read as mm, or Pa in a pressure column taken "
-               "for kPa"}};
+               "the displacement column in metres was read as mm, or a pressure column in Pa was read "
+               "as kPa"}};
 
 constexpr std::array mistakes_of_angles{
-    UnitFactor{model::deg_per_rad, "degrees in the angle column read as radians"},
-    UnitFactor{1 / model::deg_per_rad, "radians in the angle column read as degrees"},
-    UnitFactor{6.894757, "psi in a pressure column read as kPa"},
-    UnitFactor{1 / 6.894757, "kPa in a pressure column read as psi"},
-    UnitFactor{1000, "MPa in a pressure column read as kPa"},
-    UnitFactor{1 / 10.0, "mbar in a pressure column read as kPa"},
-    UnitFactor{1 / 1000.0, "Pa in a pressure column read as kPa"}};
+    UnitFactor{model::deg_per_rad, "the angle column in degrees was read as radians"},
+    UnitFactor{1 / model::deg_per_rad, "the angle column in radians was read as degrees"},
+    UnitFactor{6.894757, "a pressure column in psi was read as kPa"},
+    UnitFactor{1 / 6.894757, "a pressure column in kPa was read as psi"},
+    UnitFactor{1000, "a pressure column in MPa was read as kPa"},
+    UnitFactor{1 / 10.0, "a pressure column in mbar was read as kPa"},
+    UnitFactor{1 / 1000.0, "a pressure column in Pa was read as kPa"}};
 
 double apart(double factor, double of) {
   return std::abs(std::log(std::abs(factor) / of));

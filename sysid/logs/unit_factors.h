@@ -14,8 +14,8 @@ namespace softgrip::sysid {
 /// "" if `factor` is not the ratio of two known units.
 [[nodiscard]] std::string pressure_units_apart(double factor);
 
-/// Returns the probable mistake if the readings are `factor` times the expected values: "psi in a pressure
-/// column read as kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units.
+/// Returns the probable mistake if the readings are `factor` times the expected values: "a pressure column
+/// in psi was read as kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units.
 /// @param factor  above 0.
 /// @param unit  unit of the readings.
 [[nodiscard]] std::string mistaken_unit(double factor, model::OutputUnit unit);

@@ -163,7 +163,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   const StructureChoice choice = choose_structure(fewer, choice_options);
   StructureTrial chosen = choice.trials[choice.chosen];
   if (!std::isfinite(chosen.rmse_mm))
-    return Failure("the prediction of the model is not finite from any start point");
+    return Failure("the prediction of the model is infinite or NaN for every start point of the fit");
   result.structure = evidence_of(choice, ablation_of(fewer, choice, choice_options));
   if (readings > enough_readings) {
     chosen = fitted_to(std::move(chosen), result.records, record.drive);

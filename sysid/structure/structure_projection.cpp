@@ -31,8 +31,9 @@ class Projector {
     fitted_ = std::max(1.0, static_cast<double>(p_.columns.rows()));
     ridge_ *= p_.ridge * fitted_;
     lower_(ColumnLayout::elastic()) = p_.least_elastic;
-    // Zeros near the poles require large gains of opposite sign, so the ridge penalty of the modes only
-    // excludes gains that the readings do not determine.
+    // A model with zeros near its poles requires large mode gains of opposite signs. The ridge penalty of the
+    // mode gains is weak, so that it permits these gains. It excludes only gains that the readings do not
+    // determine.
     const auto free_sign = [&](Eigen::Index first, Eigen::Index count) {
       lower_.segment(first, count).setConstant(-std::numeric_limits<double>::infinity());
       ridge_.segment(first, count).setConstant(least_ridge * p_.largest_kpa * p_.largest_kpa * fitted_);

@@ -175,7 +175,7 @@ TEST_F(CheckFolder, SequencesAreCheckedAgainstTheReadableChannels) {
   const rig::CheckReport report = check();
   EXPECT_TRUE(says(report, "`pressure_max_kpa` must be a number")) << report.problems.format();
   EXPECT_FALSE(says(report, "goes to 90 mm"))
-      << "without limits of channel left, a motion of this channel cannot be checked";
+      << "the limits of channel left are invalid, so its motions cannot be checked";
   EXPECT_TRUE(says(report, "goes to 80 mm, channel 'right'")) << report.problems.format();
 }
 

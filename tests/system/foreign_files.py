@@ -397,7 +397,7 @@ def reports():
         File("same_clock_twice.csv", "the same time in s and in ms", table(
             ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="contains the same times"),
         File("clock_and_counter.csv", "a time and a counter of samples",
-             table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="not used: 'sample'"),
+             table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="unused columns: 'sample'"),
         File("unread_time.csv", "a time, and dates with the month first", table(
             ["time_s", "Timestamp", *names[1:]], [T, times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
              says="the column 'Timestamp' looks like a time and cannot be read ('05/31/2024 12:00:00.000')"),
@@ -532,7 +532,7 @@ def signals(stamp):
              joined=COUNT, says="the messages of 2 topics are merged by log_time"),
         File("signals_half.mcap", "MCAP: a topic per signal with separate times, and another message", mcap(
             of("/command", COMMAND) + of("/displacement", TIP, 0.002, 2) + of("/room", [20.5] * 3)), units, columns=half,
-             left_out={"empty": 3}, says="not used: 'room'"),
+             left_out={"empty": 3}, says="unused columns: 'room'"),
         File("signals_stamped.mcap", "MCAP: a topic per signal, with time stamps of ROS", mcap(both), joined=COUNT, tolerance=1e-6,
              says="the messages of 2 topics are merged by 'header.stamp.sec'"),
         File("signals_apart.mcap", "MCAP: a topic per signal, with a sensor clock that counts from its start", mcap(
@@ -760,7 +760,7 @@ def files():
              "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used, because its times differ"),
         File("fingers.csv", "columns of two fingers", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
         File("fingers_right.csv", "columns of two fingers, one finger selected", fingers, "--channel right", columns=right,
-             says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
+             says="unused columns: 'P_left (kPa)', 'tip_left (mm)'"),
         File("fingers_none.csv", "columns of two fingers, and the option --channel with a name that no finger has", fingers, "--channel thumb",
              refused="no finger has the name 'thumb': the columns belong to 'left', 'right'"),
         File("finger_alone.csv", "the option --channel for a file of one finger", PLAIN, "--channel thumb",
@@ -794,7 +794,7 @@ def files():
              "--displacement flex_V --scale displacement=18 --unit displacement=deg", columns=BENT),
         File("angle_beside.csv", "the displacement of a tip in mm, and a bending angle", table(
             ["time_s", "set_kpa", "angle (deg)", "tip (mm)"], [T, COMMAND, scaled(TIP, 0.3), TIP]),
-             says="not used: 'angle (deg)'"),
+             says="unused columns: 'angle (deg)'"),
         File("angle_gon.csv", "an unknown unit of angles", table(
             ["time_s", "set_kpa", "angle (gon)"], [T, COMMAND, TIP]), refused="'gon' is not a unit of displacement"),
         File("angle_scaled.csv", "a bending angle in degrees, converted to the path of a tip 45 mm from the bend",
@@ -804,7 +804,7 @@ def files():
              columns=MEASURED, left_out={"other_channel": 300}),
         File("recording_both", "a recording of softgripd, no channel selected", recording, refused="2 channels"),
         File("run.mcap", "a recording exported as MCAP, one channel selected", exported(bytes), "--channel left",
-             columns=MEASURED, says="not used: 'state'", left_out={"other_channel": 300}),
+             columns=MEASURED, says="unused columns: 'state'", left_out={"other_channel": 300}),
         File("both.mcap", "a recording exported as MCAP, no channel selected", exported(bytes), refused="2 channels: 'left', 'right'"),
         File("cut_off.mcap", "a recording exported as MCAP, with a missing end", exported(lambda whole: whole[:whole.index(b'"time_s":2.0') - 40]),
              "--channel left", columns={key: TRUTH[key][:201] for key in MEASURED}, says="the file is cut off: its last",

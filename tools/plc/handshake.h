@@ -58,8 +58,8 @@ class Handshake {
   [[nodiscard]] std::optional<Entry> take_waiting() noexcept;
   /// Refuses the waiting command with the reason `reason`.
   void refuse_waiting(Reason reason) noexcept;
-  /// Stores the end of the command with the counter `counter`. Has no effect if a later command has replaced
-  /// this command.
+  /// Ends the command with the counter `counter`, and stores its outcome. Has no effect if this command is
+  /// not in progress, for example because a stop has replaced it.
   void finish(std::uint16_t counter, Outcome outcome, Reason reason = Reason::none) noexcept;
   /// Sets the outcome of the command in progress to `unknown`. Must be called when the connection to the
   /// daemon is lost.

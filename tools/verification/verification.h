@@ -54,9 +54,9 @@ struct Verification {
 };
 
 /// Repeats the command that wrote `folder` in a temporary folder, and compares the JSON result, the series
-/// and the model of the two runs. Searches logs and models at their original paths, in `folder`, and in the
-/// folder that contains `folder`. The hash of each file must equal the hash that the report states for this
-/// file.
+/// and the model of the two runs. Looks for each input file (log, model or gauge file) at its original path,
+/// in `folder`, and in the folder that contains `folder`. The hash of each input file must equal the hash
+/// that the report states for this file.
 /// @param program    path of the program softgrip.
 /// @param tolerance  relative tolerance.
 [[nodiscard]] Verification verify_report(const std::string& folder, const std::string& program,

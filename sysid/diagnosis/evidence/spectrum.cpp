@@ -17,8 +17,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t shown = 100;
-/// Number of frequency bins on each side of a line with which the line is compared. The width of a bin is the
-/// frequency resolution of one record.
+/// Width of the two frequency ranges with which a spectral line is compared, below and above the line
+/// [frequency bins]. The width of a bin is the frequency resolution of one record.
 constexpr std::size_t around = 40;
 /// Half of the width of the main lobe of a Hann window, plus a margin [frequency bins].
 constexpr std::size_t lobe = 3;

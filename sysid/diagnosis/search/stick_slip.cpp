@@ -67,7 +67,9 @@ double best_band(const std::vector<Record>& records, const FitPoint& point, cons
   return bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
 }
 
-/// Returns trial values of the band. The readings can resolve the jumps for each of these bands.
+/// Returns the trial values of the band [kPa], in ascending order. The smallest value is so large that the
+/// readings can resolve the jumps of the valve.
+/// @param resolution_kpa  largest pressure difference that the readings cannot resolve.
 std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   std::vector<double> bands;
   double band = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);

@@ -51,8 +51,8 @@ struct BaseSearch {
 /// about as well as the richer one and has no inverse response.
 [[nodiscard]] std::optional<BaseFindings> find_base(const BaseSearch& search);
 
-/// Limits for causes on a richer base structure. No base structure matches a finger exactly, so a cause that
-/// is not present can absorb part of the remaining error.
+/// Limits for causes that are added to a richer base structure. No base structure matches a finger exactly.
+/// An added cause can therefore reduce the error even if the finger does not have this cause.
 struct CausesUpon {
   std::size_t most;  ///< largest number of causes on the richer base structure
   /// Smallest share of the mean square above the noise that all causes together must remove.

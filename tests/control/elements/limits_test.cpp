@@ -91,11 +91,11 @@ TEST(Limits, NoFurtherKeepsThePressureBetweenRestAndBound) {
   EXPECT_EQ(no_further(0, 20, 12), 12);
   EXPECT_EQ(no_further(0, 5, 12), 5);
   EXPECT_EQ(no_further(0, -5, 12), 0)
-      << "a bound above the rest pressure permits no pressure below the rest pressure";
+      << "if the bound is above the rest pressure, the rest pressure is the lower limit";
   EXPECT_EQ(no_further(0, -20, -12), -12);
   EXPECT_EQ(no_further(0, -5, -12), -5);
   EXPECT_EQ(no_further(0, 5, -12), 0)
-      << "a bound below the rest pressure permits no pressure above the rest pressure";
+      << "if the bound is below the rest pressure, the rest pressure is the upper limit";
   EXPECT_EQ(no_further(10, 4, 0), 4);
   EXPECT_EQ(no_further(10, 12, 0), 10);
   EXPECT_EQ(no_further(0, -20, infinity), -20);

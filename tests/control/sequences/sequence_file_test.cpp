@@ -54,9 +54,9 @@ steps:
   ASSERT_TRUE(sequence) << problems.format();
   const auto& steps = sequence->steps;
   EXPECT_EQ(steps[0].on_contact, OnContact::hold)
-      << "a step without on_fail must hold the pressure at a contact";
+      << "a move without a tolerance must hold the pressure at a contact";
   EXPECT_TRUE(std::isinf(steps[0].bounds.squeeze_max_kpa) && std::isinf(steps[0].bounds.pressure_max_kpa));
-  EXPECT_EQ(steps[1].on_contact, OnContact::fail) << "a step with on_fail must fail at a contact";
+  EXPECT_EQ(steps[1].on_contact, OnContact::fail) << "a move with a tolerance must fail at a contact";
   EXPECT_EQ(steps[2].on_contact, OnContact::fail);
   EXPECT_EQ(steps[2].on_fail, OnFail::carry_on);
   EXPECT_EQ(steps[2].retries, 2U);
@@ -69,7 +69,8 @@ steps:
   EXPECT_EQ(steps[4].bounds.squeeze_max_kpa, 3);
   EXPECT_EQ(steps[5].on_contact, OnContact::grip);
   EXPECT_EQ(steps[6].on_contact, OnContact::hold);
-  EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "an experiment must continue at a contact";
+  EXPECT_EQ(steps[7].on_contact, OnContact::ignore)
+      << "a pressure step without on_contact must ignore contacts";
 }
 
 TEST(SequenceFile, EveryKeyOfASequenceIsRead) {

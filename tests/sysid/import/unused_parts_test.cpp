@@ -39,7 +39,7 @@ class UnusedPartsTest : public testing::Test {
 TEST_F(UnusedPartsTest, AColumnWithoutARoleIsANote) {
   table_.columns.push_back(column("humidity", {40, 41, 42}));
   report();
-  EXPECT_EQ(remarks_.notes, std::vector<std::string>{"not used: 'humidity'"});
+  EXPECT_EQ(remarks_.notes, std::vector<std::string>{"unused columns: 'humidity'"});
   EXPECT_TRUE(remarks_.warnings.empty());
   EXPECT_TRUE(problems_.empty()) << problems_.format();
 }

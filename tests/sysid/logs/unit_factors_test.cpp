@@ -17,13 +17,12 @@ TEST(UnitFactors, PressureFactorsAreRecognisedInBothDirections) {
 
 TEST(UnitFactors, MessageNamesTheColumnWithTheWrongUnit) {
   EXPECT_NE(mistaken_unit(6.7, model::OutputUnit::mm)
-                .find("psi in a pressure column read as kPa (a factor of 6.895)"),
+                .find("a pressure column in psi was read as kPa (a factor of 6.895)"),
             std::string::npos);
   EXPECT_NE(mistaken_unit(103, model::OutputUnit::mm).find("bar"), std::string::npos);
-  EXPECT_NE(mistaken_unit(0.0385, model::OutputUnit::mm).find("inch in the displacement column"),
+  EXPECT_NE(mistaken_unit(0.0385, model::OutputUnit::mm).find("displacement column in inch"),
             std::string::npos);
-  EXPECT_NE(mistaken_unit(0.1, model::OutputUnit::mm).find("cm in the displacement column"),
-            std::string::npos);
+  EXPECT_NE(mistaken_unit(0.1, model::OutputUnit::mm).find("displacement column in cm"), std::string::npos);
   EXPECT_NE(mistaken_unit(1050, model::OutputUnit::mm).find("micrometres"), std::string::npos);
 }
 

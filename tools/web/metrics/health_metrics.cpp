@@ -16,7 +16,7 @@ using enum MetricText::Type;
 void tell_health(const Json& health, MetricText& metrics) {
   if (!health.is_object()) return;
   metrics.family("softgrip_health_timestamp_seconds", gauge,
-                 "Time of the last health result, in seconds since 1970-01-01 UTC.");
+                 "Time at which softgrip health computed its last result, in seconds since 1970-01-01 UTC.");
   metrics.sample(json_number(health, "made_unix_s"));
   const Json& shared = json_member(health, "shared");
   if (shared.is_array() && !shared.empty()) {
