@@ -77,6 +77,7 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
     warnings.emplace_back(
         "One healthy log does not show how much healthy runs differ from each other. A change is therefore "
         "reported only if its error exceeds three times the error between the two halves of the healthy log. "
+        "Before this comparison, a gain difference of up to 2.8 % is subtracted from the displacement. "
         "Record three or more healthy logs");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(
