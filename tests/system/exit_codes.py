@@ -108,7 +108,7 @@ class Runner:
     def words(line, out):
         return [str(bench.SOFTGRIP), *line.format(out=out).split()]
 
-    def run(self, line, out="out", expect_s=bench.PATIENCE_S * 4, **keys):
+    def run(self, line, out="out", expect_s=bench.PATIENCE_S * 8, **keys):  # baseline --rig takes 2 minutes
         keys.setdefault("stdout", subprocess.PIPE)
         keys["env"] = {**self.environment, **keys.get("env", {})}
         return subprocess.run(self.words(line, out), stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, cwd=self.folder,
