@@ -76,7 +76,7 @@ std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const st
     all[i].fit = fit_effect(readings, effects[i], others, without);
     all[i].gain = (before - all[i].fit.sum_of_squares - price_of(effects[i])) / rows;
     all[i].usual = tolerance.usual(effects[i].id);
-    all[i].tolerance = tolerance.limit();
+    all[i].tolerance = tolerance.of(effects[i].id);
   });
   std::stable_sort(all.begin(), all.end(), [](const ScoredEffect& a, const ScoredEffect& b) {
     return beyond_usual(a) > beyond_usual(b);

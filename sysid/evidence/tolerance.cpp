@@ -16,14 +16,9 @@ double run_to_run_factor(std::size_t runs) {
 
 Tolerance::Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more)
     : factor_(run_to_run_factor(runs)), more_(more) {
-  const double share = 1 / std::max(1.0, static_cast<double>(units.size()));
   for (const NullGains& unit : units) {
-    double largest = 0;
-    for (const auto& [cause, gain] : unit) {
-      usual_[cause] += share * std::max(gain, 0.0);
-      largest = std::max(largest, gain);
-    }
-    search_ += share * largest;
+    for (const auto& [cause, gain] : unit)
+      usual_[cause] += std::max(gain, 0.0) / static_cast<double>(units.size());
   }
   for (const auto& [cause, gain] : usual_) average_ += gain / static_cast<double>(usual_.size());
 }
@@ -31,6 +26,10 @@ Tolerance::Tolerance(const std::vector<NullGains>& units, std::size_t runs, doub
 double Tolerance::usual(std::string_view cause) const {
   const auto found = usual_.find(cause);
   return found == usual_.end() ? average_ : found->second;
+}
+
+double Tolerance::of(std::string_view cause) const {
+  return factor_ * (std::max(usual(cause), average_) + more_);
 }
 
 }  // namespace softgrip::sysid

@@ -30,17 +30,16 @@ class Tolerance {
   /// @param more  increase of the expected loss per row because of an unfamiliar input.
   Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more = 0);
 
-  /// Returns the mean error reduction by a cause in data without a change, >= 0. For a cause that was not
-  /// tried in these data, returns the average of all causes.
+  /// Returns the mean error reduction by a cause in data without a change, >= 0.
   [[nodiscard]] double usual(std::string_view cause) const;
-  /// Returns the error reduction per row above which a cause counts as a change. The limit is
-  /// run_to_run_factor() times the mean error reduction by the whole search in data without a change: in each
-  /// unit, the largest reduction by any cause. The increase `more` is added to this mean.
-  [[nodiscard]] double limit() const { return factor_ * (search_ + more_); }
+  /// Returns the error reduction per row above which a cause counts as a change. The threshold is
+  /// run_to_run_factor() times the larger one of two values: the mean reduction by this cause, and the mean
+  /// reduction by all causes. The increase `more` is added.
+  [[nodiscard]] double of(std::string_view cause) const;
 
  private:
   NullGains usual_;
-  double average_ = 0, search_ = 0, factor_ = 1, more_ = 0;
+  double average_ = 0, factor_ = 1, more_ = 0;
 };
 
 }  // namespace softgrip::sysid
