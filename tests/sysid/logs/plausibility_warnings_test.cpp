@@ -127,8 +127,8 @@ TEST(PlausibilityWarnings, LogInADifferentUnitIsReported) {
   logs[0].name = "a", logs[1].name = "b", logs[2].name = "c";
   for (double& y : logs[1].displacement_mm) y /= 25.4;
   const std::string warnings = all_of(plausibility_warnings_among(logs));
-  EXPECT_NE(warnings.find(
-                "b: the finger moves 0.0394 times as far per kPa as in the other logs. Possible cause: inch"),
+  EXPECT_NE(warnings.find("b: the finger moves 0.0394 times as far per kPa as in the other logs. Possible "
+                          "cause: the displacement column in inch"),
             std::string::npos)
       << warnings;
   EXPECT_EQ(warnings.find("a: "), std::string::npos);
