@@ -231,9 +231,13 @@ void spread(Base& base) {
   }
   const double free = std::max(1.0, count - 1);
   base.zero_mm = count > 0 ? zeros / count : 0;
-  const bool is_measured = base.units.are_runs() || base.judged == Judged::pressure;
-  base.gain_spread = std::max(is_measured ? least_gain_spread : limits::usual_gain_spread,
+  // With one healthy run of a finger, the spread is assumed, and the difference is that of two gains.
+  // Otherwise, the spread is estimated from the units.
+  const bool is_assumed = !base.units.are_runs() && base.judged == Judged::displacement;
+  base.gain_spread = std::max(is_assumed ? limits::usual_gain_spread : least_gain_spread,
                               count > 0 ? std::sqrt(gains / count) : 0);
+  base.free_gain = base.gain_spread * (is_assumed ? deviate_between_two_runs
+                                                  : t_quantile(static_cast<double>(base.units.count() - 1)));
   base.zero_spread_mm =
       std::max(least_zero_share * base.span_mm,
                count > 0 ? std::sqrt(std::max(0.0, zeros_squared - zeros * zeros / count) / free) : 0);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "sysid/changes/regulator.h"
 #include "sysid/evidence/units.h"
 #include "sysid/fitting/fit_space.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
@@ -31,6 +33,11 @@ enum class Judged { displacement, pressure };
 [[nodiscard]] inline std::string unit_of(Judged judged, model::OutputUnit output_unit) {
   return judged == Judged::pressure ? "kPa" : std::string(model::name_of(output_unit));
 }
+
+/// Largest difference between the gains of two runs of an unchanged finger, in standard deviations of the
+/// gain. The difference is smaller with the probability limits::probability. Used if there is only one
+/// healthy run.
+inline constexpr double deviate_between_two_runs = limits::deviate * std::numbers::sqrt2;
 
 /// A model of the healthy finger: a structure with an optional regulator and an optional filter bank.
 struct HealthyModel {
@@ -57,7 +64,9 @@ struct Base : HealthyModel {
   double span_mm = 0;
   double gain_spread = 0;  ///< relative spread of the gain between the healthy runs; with one healthy run, at
                            ///< least limits::usual_gain_spread for the displacement
-  double zero_mm = 0;      ///< mean difference between the healthy readings and the predictions
+  double free_gain = 0;  ///< largest relative difference of the gain that does not count as a change, because
+                         ///< a further run of an unchanged finger may show it
+  double zero_mm = 0;    ///< mean difference between the healthy readings and the predictions
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;

@@ -14,6 +14,7 @@
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/diagnosis/residual/sampling.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -77,7 +78,11 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
     warnings.emplace_back(
         "One healthy log does not show how much healthy runs differ from each other. A change is therefore "
         "reported only if its error exceeds three times the error between the two halves of the healthy log. "
-        "Before this comparison, a gain difference of up to 2.8 % is subtracted from the displacement. "
+        "Before this comparison, a gain difference of up to " +
+        significant(100 * deviate_between_two_runs * limits::usual_gain_spread, 2) +
+        " % is subtracted from the displacement (more if the gains of the two halves differ by more than " +
+        significant(100 * limits::usual_gain_spread, 1) +
+        " %). "
         "Record three or more healthy logs");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(

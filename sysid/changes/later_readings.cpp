@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 
 #include <Eigen/Cholesky>
@@ -11,7 +10,6 @@
 #include "base/statistics.h"
 #include "sysid/changes/filter_bank.h"
 #include "sysid/fitting/start_estimate.h"
-#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -31,15 +29,6 @@ std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
   for (std::size_t b = 0; b < bins; ++b)
     series[b] = std::exp(-(static_cast<double>(b) + 0.5) * bin_s / lag_s);
   return series;
-}
-
-/// Returns the largest relative difference of the gain that does not count as a change. A further run of an
-/// unchanged finger may show this difference. The spread of several healthy runs was estimated from these
-/// runs. With one healthy run, the spread is assumed, and the difference is that of two gains.
-double free_gain(const Base& base) {
-  const bool is_assumed = !base.units.are_runs() && base.judged == Judged::displacement;
-  return base.gain_spread * (is_assumed ? limits::deviate * std::numbers::sqrt2
-                                        : t_quantile(static_cast<double>(base.units.count() - 1)));
 }
 
 Binned peak_rates_of(const std::vector<Record>& records, double bin_s, const Binned& left) {
@@ -155,7 +144,7 @@ Binned LaterReadings::added(const std::vector<FittedEffect>& effects) const {
 LaterReadings::Split LaterReadings::split(const std::vector<FittedEffect>& effects) const {
   Split split;
   split.left = effects.empty() ? target_ : Eigen::VectorXd(target_ - rows_(added(effects)));
-  const double bound = free_gain(base_);
+  const double bound = base_.free_gain;
   const double square = motion_left_.dot(motion_);
   split.gain = square > 0 ? std::clamp(motion_left_.dot(split.left) / square, -bound, bound) : 0;
   split.left -= split.gain * motion_;
@@ -235,7 +224,7 @@ double LaterReadings::plain_rms(const std::vector<FittedEffect>& effects) const 
     motions += own.variance_x() / own.count;
     count += own.count;
   }
-  const double bound = free_gain(base_);
+  const double bound = base_.free_gain;
   const double gain = motions > 0 ? std::clamp(products / motions, -bound, bound) : 0;
   const double left = misses - 2 * gain * products + gain * gain * motions;
   return count > 0 ? std::sqrt(std::max(left, 0.0) / count) : 0;
