@@ -331,8 +331,9 @@ void SocketApi::loaded(const Planned& planned, SequenceLoader::Result sequence, 
   }
   const Kind kind = planned.dry_run ? Kind::check : Kind::start;
   const auto number = ask(planned.client, planned.id, kind, std::move(*sequence), now);
-  const KnownStart start{.request = number.value_or(0), .id = planned.start_id, .client = planned.client};
-  if (number && !planned.dry_run) starts_.add(start, sources_.service.sequence_request());
+  if (number && !planned.dry_run)
+    starts_.add({.request = *number, .id = planned.start_id, .client = planned.client},
+                sources_.service.sequence_request());
 }
 
 std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
