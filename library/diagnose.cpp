@@ -69,7 +69,7 @@ Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const Diagn
   std::vector<Cause> causes;
   for (const sysid::NamedCause& named : found->causes) causes.push_back(public_cause(named));
   const sysid::DiagnosisReport report{*found, checked, model.parts().value, options.seed, {}, {}};
-  return {sysid::name_of(sysid::whole_verdict(*found)),
+  return {std::string(sysid::name_of(sysid::whole_verdict(*found))),
           sysid::verdict_sentence(*found),
           found->warnings,
           std::move(causes),
@@ -102,7 +102,7 @@ Change diagnose_change(const Model& model, const std::vector<Log>& healthy, cons
   if (!found) throw Refused(found.error());
   std::vector<Cause> causes;
   for (const sysid::ChangeCause& cause : found->causes) causes.push_back(public_cause(cause));
-  return {sysid::name_of(found->verdict),
+  return {std::string(sysid::name_of(found->verdict)),
           sysid::change_sentence(*found),
           found->warnings,
           std::move(causes),

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
+#include "base/enum_table.h"
 #include "base/numbers.h"
 #include "base/thread_budget.h"
 #include "sysid/changes/change_judge.h"
@@ -152,20 +154,15 @@ ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
 
 }  // namespace
 
-const char* name_of(ChangeVerdict verdict) {
-  switch (verdict) {
-    case ChangeVerdict::unchanged:
-      return "unchanged";
-    case ChangeVerdict::cause_found:
-      return "cause_found";
-    case ChangeVerdict::ambiguous:
-      return "ambiguous";
-    case ChangeVerdict::partly_explained:
-      return "partly_explained";
-    case ChangeVerdict::unexplained:
-      break;
-  }
-  return "unexplained";
+std::string_view name_of(ChangeVerdict verdict) {
+  static constexpr auto names = enum_names<ChangeVerdict>({
+      {ChangeVerdict::unchanged, "unchanged"},
+      {ChangeVerdict::cause_found, "cause_found"},
+      {ChangeVerdict::ambiguous, "ambiguous"},
+      {ChangeVerdict::partly_explained, "partly_explained"},
+      {ChangeVerdict::unexplained, "unexplained"},
+  });
+  return names[verdict];
 }
 
 tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -19,7 +20,7 @@
 namespace softgrip::sysid {
 
 enum class ChangeVerdict { unchanged, cause_found, ambiguous, partly_explained, unexplained };
-[[nodiscard]] const char* name_of(ChangeVerdict verdict);
+[[nodiscard]] std::string_view name_of(ChangeVerdict verdict);
 
 struct ChangeOptions {
   bool held = false;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/enum_table.h"
 #include "document/problem.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/log.h"
@@ -39,6 +40,14 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
     {Role::temperature, "temperature", Quantity::temperature, "C", &Log::temperature_c},
     {Role::supply, "supply", Quantity::pressure, "kPa", &Log::supply_kpa},
 }};
+static_assert(!is_enumerator<static_cast<Role>(role_count)>(), "a role has no row");
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < role_count; ++i)
+        if (roles[i].role != static_cast<Role>(i)) return false;
+      return true;
+    }(),
+    "the rows are not in the order of the roles");
 [[nodiscard]] constexpr const RoleSpec& spec_of(Role role) {
   return roles[static_cast<std::size_t>(role)];
 }

@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,7 +34,7 @@
 namespace softgrip::sysid {
 
 enum class Verdict { adequate, recalibrate, cause_found, ambiguous, partly_explained, unexplained };
-[[nodiscard]] const char* name_of(Verdict verdict);
+[[nodiscard]] std::string_view name_of(Verdict verdict);
 
 struct DiagnosisOptions {
   RecordOptions record;

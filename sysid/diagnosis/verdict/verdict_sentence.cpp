@@ -1,5 +1,7 @@
 #include <string>
+#include <string_view>
 
+#include "base/enum_table.h"
 #include "base/numbers.h"
 #include "base/text.h"
 #include "model/catalogue.h"
@@ -135,22 +137,16 @@ std::string sentence_of_logs(const Diagnosis& d) {
 
 }  // namespace
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::adequate:
-      return "adequate";
-    case Verdict::recalibrate:
-      return "recalibrate";
-    case Verdict::cause_found:
-      return "cause_found";
-    case Verdict::ambiguous:
-      return "ambiguous";
-    case Verdict::partly_explained:
-      return "partly_explained";
-    case Verdict::unexplained:
-      return "unexplained";
-  }
-  return "unexplained";
+std::string_view name_of(Verdict verdict) {
+  static constexpr auto names = enum_names<Verdict>({
+      {Verdict::adequate, "adequate"},
+      {Verdict::recalibrate, "recalibrate"},
+      {Verdict::cause_found, "cause_found"},
+      {Verdict::ambiguous, "ambiguous"},
+      {Verdict::partly_explained, "partly_explained"},
+      {Verdict::unexplained, "unexplained"},
+  });
+  return names[verdict];
 }
 
 Verdict whole_verdict(const Diagnosis& d) {
