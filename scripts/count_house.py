@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Counts the source files, the folders and the includes between folders, in any checkout of this project:
+"""Counts the source files, the folders and the includes between folders, in one or several checkouts of this project:
 
-  scripts/count_house.py [--names] [CHECKOUT]
+  scripts/count_house.py [--names] [--folders] [CHECKOUT ...]
 
-Prints a table in Markdown. --names also prints the files that each count contains. An include counts as an include
-between folders if the header is in another folder than the file. Product lines are the lines of .h and .cpp files
-outside tests/ and bench/. docs/results/house-counts.md compares two versions.
+Prints a table in Markdown with a column for each checkout. --names also prints the files that each count contains.
+--folders also prints the lines of each folder. An include counts as an include between folders if the header is in
+another folder than the file. Product lines are the lines of .h and .cpp files outside tests/ and bench/.
+docs/results/house-counts.md compares three versions.
 """
 
 import argparse
@@ -134,18 +135,47 @@ def count(root):
     ]
 
 
+def folder_lines(sources):
+    """Returns {folder: lines} for the top-level folders, and for the folders of sysid, tools and daemon."""
+    lines = collections.Counter()
+    for name, text in sources.items():
+        parts = name.split("/")
+        deep = parts[0] in ("sysid", "tools", "daemon") and len(parts) > 2
+        lines["/".join(parts[:2 if deep else 1])] += text.count("\n")
+    return lines
+
+
+def version(root):
+    return subprocess.run(["git", "-C", root, "rev-parse", "--short=8", "HEAD"], check=True, capture_output=True,
+                          text=True).stdout.strip()
+
+
+def print_table(title, versions, rows):
+    print(f"| {title} | {' | '.join(versions)} |\n|{'---|' * (len(versions) + 1)}")
+    for name, numbers in rows:
+        print(f"| {name} | {' | '.join(map(str, numbers))} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkout", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[1])
+    parser.add_argument("checkouts", nargs="*", type=pathlib.Path, metavar="CHECKOUT",
+                        default=[pathlib.Path(__file__).resolve().parents[1]])
     parser.add_argument("--names", action="store_true")
+    parser.add_argument("--folders", action="store_true")
     args = parser.parse_args()
-    counted = count(args.checkout)
-    print("| what | count |\n|---|---|")
-    for what, number, _ in counted:
-        print(f"| {what} | {number} |")
-    for what, _, places in counted:
-        if args.names and places:
-            print(f"\n{what}:", *places, sep="\n  ")
+    versions = [version(root) for root in args.checkouts]
+    counted = [count(root) for root in args.checkouts]
+    print_table("count", versions, [(rows[0][0], [number for _, number, _ in rows]) for rows in zip(*counted)])
+    if args.folders:
+        lines = [folder_lines(product(root)) for root in args.checkouts]
+        names = sorted(set().union(*lines), key=lambda name: lines[-1][name] - lines[0][name])
+        print()
+        print_table("lines in folder", versions, [(f"`{name}`", [each[name] for each in lines]) for name in names])
+    if args.names:
+        for name, counts in zip(versions, counted):
+            for what, _, places in counts:
+                if places:
+                    print(f"\n{name}, {what}:", *places, sep="\n  ")
 
 
 if __name__ == "__main__":
