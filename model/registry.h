@@ -31,19 +31,19 @@
 #include "model/blocks/pressure_scale.h"
 #include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/quantisation.h"
-#include "model/blocks/rate_dependent_levelling.h"
+#include "model/blocks/rate_dependent_saturation.h"
 #include "model/blocks/rate_dependent_width.h"
 #include "model/blocks/rate_limit.h"
 #include "model/blocks/relaxing_friction.h"
 #include "model/blocks/running_in.h"
 #include "model/blocks/sampling.h"
 #include "model/blocks/sensor_drift.h"
-#include "model/blocks/sensor_free_drift.h"
 #include "model/blocks/sensor_lag.h"
 #include "model/blocks/sensor_noise.h"
 #include "model/blocks/sensor_nonlinearity.h"
+#include "model/blocks/sensor_piecewise_drift.h"
 #include "model/blocks/sensor_saturation.h"
-#include "model/blocks/sensor_wander.h"
+#include "model/blocks/sensor_sinusoidal_drift.h"
 #include "model/blocks/sensor_warm_up.h"
 #include "model/blocks/slow_creep.h"
 #include "model/blocks/stiffening.h"
@@ -80,54 +80,54 @@ struct BlockList {
 
 /// All blocks, in the order in which the signal passes through the blocks. with_block() inserts a block in
 /// this order.
-using Blocks = BlockList<TransportDelay,          //
-                         ValveDeadband,           //
-                         ValveStiction,           //
-                         ValveLag,                //
-                         AsymmetricValveLag,      //
-                         RateLimit,               //
-                         PressureRegulator,       //
-                         SupplySag,               //
-                         PressureSaturation,      //
-                         ChamberLag,              //
-                         PressureScale,           //
-                         Leak,                    //
-                         ActuatorThreshold,       //
-                         StressSoftening,         //
-                         PseudoElasticSoftening,  //
-                         BoucWen,                 //
-                         PrandtlIshlinskii,       //
-                         KelvinVoigt,             //
-                         PressureDependentCreep,  //
-                         LinearModes,             //
-                         SlowCreep,               //
-                         DuhemHysteresis,         //
-                         CrescentHysteresis,      //
-                         AsymmetricBoucWen,       //
-                         RelaxingFriction,        //
-                         RateDependentWidth,      //
-                         RateDependentLevelling,  //
-                         Characteristic,          //
-                         Stiffening,              //
-                         ThermalGain,             //
-                         Ageing,                  //
-                         RunningIn,               //
-                         Wear,                    //
-                         Inertia,                 //
-                         Contact,                 //
-                         Backlash,                //
-                         SensorLag,               //
-                         ClockOffset,             //
-                         SensorNonlinearity,      //
-                         SensorDrift,             //
-                         SensorWarmUp,            //
-                         SensorWander,            //
-                         SensorFreeDrift,         //
-                         PeriodicDisturbance,     //
-                         SensorNoise,             //
-                         Outliers,                //
-                         SensorSaturation,        //
-                         Sampling,                //
+using Blocks = BlockList<TransportDelay,           //
+                         ValveDeadband,            //
+                         ValveStiction,            //
+                         ValveLag,                 //
+                         AsymmetricValveLag,       //
+                         RateLimit,                //
+                         PressureRegulator,        //
+                         SupplySag,                //
+                         PressureSaturation,       //
+                         ChamberLag,               //
+                         PressureScale,            //
+                         Leak,                     //
+                         ActuatorThreshold,        //
+                         StressSoftening,          //
+                         PseudoElasticSoftening,   //
+                         BoucWen,                  //
+                         PrandtlIshlinskii,        //
+                         KelvinVoigt,              //
+                         PressureDependentCreep,   //
+                         LinearModes,              //
+                         SlowCreep,                //
+                         DuhemHysteresis,          //
+                         CrescentHysteresis,       //
+                         AsymmetricBoucWen,        //
+                         RelaxingFriction,         //
+                         RateDependentWidth,       //
+                         RateDependentSaturation,  //
+                         Characteristic,           //
+                         Stiffening,               //
+                         ThermalGain,              //
+                         Ageing,                   //
+                         RunningIn,                //
+                         Wear,                     //
+                         Inertia,                  //
+                         Contact,                  //
+                         Backlash,                 //
+                         SensorLag,                //
+                         ClockOffset,              //
+                         SensorNonlinearity,       //
+                         SensorDrift,              //
+                         SensorWarmUp,             //
+                         SensorSinusoidalDrift,    //
+                         SensorPiecewiseDrift,     //
+                         PeriodicDisturbance,      //
+                         SensorNoise,              //
+                         Outliers,                 //
+                         SensorSaturation,         //
+                         Sampling,                 //
                          Quantisation>;
 
 /// A variant that contains one block of any registered type. The index of a type in the variant equals

@@ -9,7 +9,7 @@
 #include "model/blocks/duhem_hysteresis.h"
 #include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/sensor_nonlinearity.h"
-#include "model/blocks/sensor_wander.h"
+#include "model/blocks/sensor_sinusoidal_drift.h"
 #include "model/blocks/stiffening.h"
 #include "model/blocks/stress_softening.h"
 #include "model/blocks/thermal_gain.h"
@@ -86,7 +86,7 @@ class Collector {
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
     // The free form of sensor drift is piecewise linear. It can represent a sinusoidal drift too, so the
     // sinusoidal form is not tried.
-    if (form.type == model::block_type<model::SensorWander>()) return;
+    if (form.type == model::block_type<model::SensorSinusoidalDrift>()) return;
     // The next two blocks are skipped here. add_softening() and add_crescent() add their effects for any
     // baseline model.
     if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;

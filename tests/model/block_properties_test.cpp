@@ -141,7 +141,7 @@ TEST(EveryBlock, TwoHalfStepsEqualOneStep) {
                                              block_type<LinearModes>(),
                                              block_type<RelaxingFriction>(),
                                              block_type<RateDependentWidth>(),
-                                             block_type<RateDependentLevelling>(),
+                                             block_type<RateDependentSaturation>(),
                                              block_type<Wear>(),
                                              block_type<Inertia>(),
                                              block_type<Backlash>(),

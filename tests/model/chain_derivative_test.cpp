@@ -117,7 +117,7 @@ TEST(ChainDerivatives, EveryBlockAgreesWithFiniteDifferences) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     const std::string_view id = catalogue()[type].info.id;
     if (position_of(twin, type) || id == "pressure_saturation" || id == "quantisation") continue;
-    if (type == block_type<ValveStiction>() || type == block_type<RateDependentLevelling>()) continue;
+    if (type == block_type<ValveStiction>() || type == block_type<RateDependentSaturation>()) continue;
     SCOPED_TRACE(id);
     expect_derivatives_agree(with_block(twin, default_block(type)), SignalName::tp2);
   }
@@ -127,7 +127,7 @@ TEST(ChainDerivatives, EveryBlockAgreesWithFiniteDifferences) {
   expect_derivatives_agree(with_block(twin, {block_type<ValveStiction>(), {2.37}}), SignalName::tp2);
   // These parameter values are large. With smaller values, the rounding errors of the finite differences
   // would exceed the derivative.
-  expect_derivatives_agree(with_block(twin, {block_type<RateDependentLevelling>(), {3.0, 20.0, 0.05}}),
+  expect_derivatives_agree(with_block(twin, {block_type<RateDependentSaturation>(), {3.0, 20.0, 0.05}}),
                            SignalName::tp2);
 }
 

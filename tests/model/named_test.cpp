@@ -21,8 +21,8 @@ TEST(Named, TypesMatchTheCatalogue) {
 TEST(Named, EveryNameHasTheIndexOfItsValue) {
   const BlockSpec branches = default_block(block_type<KelvinVoigt>(), 8);
   EXPECT_EQ(find_parameter(branches, "k8_kpa_per_mm"), parameter_index<KelvinVoigt>("k8_kpa_per_mm"));
-  const BlockSpec knots = default_block(block_type<SensorFreeDrift>(), 16);
-  EXPECT_EQ(find_parameter(knots, "knot16_mm"), parameter_index<SensorFreeDrift>("knot16_mm"));
+  const BlockSpec knots = default_block(block_type<SensorPiecewiseDrift>(), 16);
+  EXPECT_EQ(find_parameter(knots, "knot16_mm"), parameter_index<SensorPiecewiseDrift>("knot16_mm"));
 }
 
 TEST(Named, UnspecifiedParametersAreNeutral) {

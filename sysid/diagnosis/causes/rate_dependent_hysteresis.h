@@ -2,7 +2,7 @@
 // Defines a cause: the width of the hysteresis loop depends on the rate of the pressure, beyond the
 // dependence that creep causes.
 
-#include "model/blocks/rate_dependent_levelling.h"
+#include "model/blocks/rate_dependent_saturation.h"
 #include "model/blocks/rate_dependent_width.h"
 #include "model/blocks/relaxing_friction.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -63,7 +63,7 @@ struct RateDependentHysteresis {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
   /// Form of the cause: the saturation value of the hysteretic state depends on the rate of the pressure.
-  struct Saturating : Following<model::RateDependentLevelling> {
+  struct Saturating : Following<model::RateDependentSaturation> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };
 

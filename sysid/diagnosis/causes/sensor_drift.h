@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "model/blocks/sensor_drift.h"
-#include "model/blocks/sensor_free_drift.h"
-#include "model/blocks/sensor_wander.h"
+#include "model/blocks/sensor_piecewise_drift.h"
+#include "model/blocks/sensor_sinusoidal_drift.h"
 #include "model/blocks/sensor_warm_up.h"
 #include "sysid/diagnosis/causes/form.h"
 
@@ -48,7 +48,7 @@ struct SensorDrift {
   };
 
   /// Form of the cause: the zero offset follows a slow sinusoid.
-  struct Sinusoidal : FormOf<model::SensorWander> {
+  struct Sinusoidal : FormOf<model::SensorSinusoidalDrift> {
     /// Returns start points with six periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
       Starts starts;
@@ -72,7 +72,7 @@ struct SensorDrift {
   };
 
   /// Form of the cause: the zero offset follows a piecewise linear curve.
-  struct Knots : FormOf<model::SensorFreeDrift> {
+  struct Knots : FormOf<model::SensorPiecewiseDrift> {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {

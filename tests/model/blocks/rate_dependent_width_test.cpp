@@ -18,7 +18,7 @@ Model widened(double growth, double saturation = 0) {
   Model model{"widened", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
   model = with_block(model, {block_type<RateDependentWidth>(), {growth, 15.0, 0.08}});
   if (saturation == 0) return model;
-  return with_block(model, {block_type<RateDependentLevelling>(), {saturation, 15.0, 0.08}});
+  return with_block(model, {block_type<RateDependentSaturation>(), {saturation, 15.0, 0.08}});
 }
 
 struct Move {

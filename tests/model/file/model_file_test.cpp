@@ -133,7 +133,7 @@ std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& 
 // the first version have the same meaning as before.
 TEST(ModelFile, ParametersOfLaterVersionsAreOptional) {
   EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
-            (std::vector<BlockSpec>{{block_type<SensorWander>(), {0.1, 0, 300}}}));
+            (std::vector<BlockSpec>{{block_type<SensorSinusoidalDrift>(), {0.1, 0, 300}}}));
   EXPECT_EQ(blocks_of("actuator", "asymmetric_bouc_wen: {epsilon_per_kpa: 0.01}"),
             (std::vector<BlockSpec>{{block_type<AsymmetricBoucWen>(), {0, 0.01, 0}}}));
 }
@@ -189,7 +189,7 @@ TEST(ModelFile, ConvertsFormerBlocksToPresentBlocks) {
        {{block_type<RateDependentWidth>(), {0.2, 15, 0.1}}}},
       {"actuator",
        "rate_dependent_hysteresis: {gain_mm_per_kpa: 0, width_kpa: 10, time_constant_s: 1, levelling: 0.4}",
-       {{block_type<RateDependentLevelling>(), {0.4, 20, 0.05}}}},
+       {{block_type<RateDependentSaturation>(), {0.4, 20, 0.05}}}},
       {"actuator", "ageing: {gain_per_h: 0.1}", {{block_type<Ageing>(), {0.1}}}},
       {"actuator",
        "ageing: {gain_per_h: 0, run_in: 0.1, run_in_time_s: 40, gain_per_m: 0}",
@@ -204,12 +204,12 @@ TEST(ModelFile, ConvertsFormerBlocksToPresentBlocks) {
       {"sensor",
        "sensor_drift: {rate_mm_per_h: 0, warm_up_mm: 0, warm_up_time_s: 50, wander_sin_mm: 0.3, "
        "wander_cos_mm: 0.1, wander_period_s: 80, knot_interval_s: 30}",
-       {{block_type<SensorWander>(), {0.3, 0.1, 80}}}},
+       {{block_type<SensorSinusoidalDrift>(), {0.3, 0.1, 80}}}},
       {"sensor",
        "sensor_drift: {rate_mm_per_h: 0, warm_up_mm: 0, warm_up_time_s: 50, knot_interval_s: 12, knot1_mm: "
        "0.1, "
        "knot2_mm: 0.2}",
-       {{block_type<SensorFreeDrift>(), {12, 0.1, 0.2}}}}};
+       {{block_type<SensorPiecewiseDrift>(), {12, 0.1, 0.2}}}}};
   for (const Earlier& file : files) EXPECT_EQ(blocks_of(file.station, file.text), file.means) << file.text;
 }
 

@@ -12,7 +12,7 @@ namespace softgrip::model {
 /// b and w = 2 pi / period. t is the time since the start of the measurement campaign. The block models a
 /// slow drift, for example with the room temperature. PeriodicDisturbance models faster oscillations.
 template <class T>
-class SensorWander {
+class SensorSinusoidalDrift {
  public:
   static constexpr BlockInfo info =
       block_info("sensor_wander", Station::sensor, Kind::reading, Inverse::ignored, "Sinusoidal sensor drift",
@@ -26,7 +26,7 @@ class SensorWander {
       parameter("wander_period_s", "s", "period of the sinusoidal drift", Typical{300.0}, Within{1.0, 1e5},
                 Scale{30.0}, IfLeftOut{300.0})};
 
-  SensorWander(std::span<const T> values, const Preparation&)
+  SensorSinusoidalDrift(std::span<const T> values, const Preparation&)
       : sin_mm_(values[0]), cos_mm_(values[1]), period_s_(values[2]) {}
 
   void reset(const T& input) { output_ = input; }

@@ -9,7 +9,7 @@ namespace softgrip::model {
 /// Increases eta of the chain's Bouc-Wen element with the pressure rate, so that its hysteretic state
 /// saturates earlier (see bouc_wen.h).
 template <class T>
-class RateDependentLevelling : public BoucWenPart<T> {
+class RateDependentSaturation : public BoucWenPart<T> {
  public:
   static constexpr BlockInfo info = block_info(
       "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
@@ -28,7 +28,7 @@ class RateDependentLevelling : public BoucWenPart<T> {
       parameter("settling_s", "s", "time constant with which the rate of pressure change is averaged",
                 Typical{0.05}, Within{1e-3, 100.0}, Scale{0.05}, IfLeftOut{0.05})};
 
-  RateDependentLevelling(std::span<const T> values, const Preparation&)
+  RateDependentSaturation(std::span<const T> values, const Preparation&)
       : rate_{values[0], values[1], values[2]} {}
 
   void shape(BoucWen<T>& hysteresis) const {

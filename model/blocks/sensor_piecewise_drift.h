@@ -12,7 +12,7 @@ namespace softgrip::model {
 /// interval after the start of the measurement campaign. The drift is zero at the start and constant after
 /// the last knot.
 template <class T>
-class SensorFreeDrift {
+class SensorPiecewiseDrift {
  public:
   static constexpr BlockInfo info = block_info(
       "sensor_free_drift", Station::sensor, Kind::reading, Inverse::ignored, "Free sensor drift",
@@ -26,7 +26,7 @@ class SensorFreeDrift {
                 Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0})};
   static constexpr std::size_t max_parts = 16;
 
-  SensorFreeDrift(std::span<const T> values, const Preparation&)
+  SensorPiecewiseDrift(std::span<const T> values, const Preparation&)
       : knots_per_s_(1.0 / values[0]), knots_mm_(values.begin() + parameters.size(), values.end()) {}
 
   void reset(const T& input) { output_ = input; }

@@ -1,4 +1,4 @@
-#include "model/blocks/sensor_free_drift.h"
+#include "model/blocks/sensor_piecewise_drift.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing::sensor_free_drift_test {
+namespace softgrip::model::testing::sensor_piecewise_drift_test {
 namespace {
 
-using Block = SensorFreeDrift<double>;
+using Block = SensorPiecewiseDrift<double>;
 
-TEST(SensorFreeDrift, IsLinearBetweenKnotsAndConstantAfterTheLast) {
+TEST(SensorPiecewiseDrift, IsLinearBetweenKnotsAndConstantAfterTheLast) {
   Block block = make<Block>({20.0, 0.4, -0.2, 0.1});
   Surroundings around;
   for (const auto& [time_s, drift_mm] : std::vector<std::pair<double, double>>{{0, 0.0},
@@ -30,4 +30,4 @@ TEST(SensorFreeDrift, IsLinearBetweenKnotsAndConstantAfterTheLast) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing::sensor_free_drift_test
+}  // namespace softgrip::model::testing::sensor_piecewise_drift_test

@@ -1,4 +1,4 @@
-#include "model/blocks/sensor_wander.h"
+#include "model/blocks/sensor_sinusoidal_drift.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing::sensor_wander_test {
+namespace softgrip::model::testing::sensor_sinusoidal_drift_test {
 namespace {
 
-using Block = SensorWander<double>;
+using Block = SensorSinusoidalDrift<double>;
 
-TEST(SensorWander, DriftIsTheSumOfTwoSinusoids) {
+TEST(SensorSinusoidalDrift, DriftIsTheSumOfTwoSinusoids) {
   Block block = make<Block>({0.3, 0.2, 200.0});
   Surroundings around;
   for (const auto& [time_s, drift_mm] : std::vector<std::pair<double, double>>{
@@ -23,4 +23,4 @@ TEST(SensorWander, DriftIsTheSumOfTwoSinusoids) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing::sensor_wander_test
+}  // namespace softgrip::model::testing::sensor_sinusoidal_drift_test

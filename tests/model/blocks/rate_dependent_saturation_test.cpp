@@ -1,4 +1,4 @@
-#include "model/blocks/rate_dependent_levelling.h"
+#include "model/blocks/rate_dependent_saturation.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include "model/chain.h"
 #include "model/named.h"
 
-namespace softgrip::model::testing::rate_dependent_levelling_test {
+namespace softgrip::model::testing::rate_dependent_saturation_test {
 namespace {
 
 Model saturating(double saturation) {
   const Model model{"saturating", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
-  return with_block(model, {block_type<RateDependentLevelling>(), {saturation, 15.0, 0.08}});
+  return with_block(model, {block_type<RateDependentSaturation>(), {saturation, 15.0, 0.08}});
 }
 
 struct Move {
@@ -23,7 +23,7 @@ const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, 
 
 // Compares the chain with an integration of the equation in steps of 10 us. In each of its steps, the chain
 // uses the rate at the beginning of the step.
-TEST(RateDependentLevelling, FollowsTheDifferentialEquation) {
+TEST(RateDependentSaturation, FollowsTheDifferentialEquation) {
   for (const double saturation : {1.5, -0.6}) {
     Chain<double> chain(saturating(saturation));
     double p = 0, h = 0, r = 0;
@@ -47,10 +47,10 @@ TEST(RateDependentLevelling, FollowsTheDifferentialEquation) {
   }
 }
 
-TEST(RateDependentLevelling, HasNoEffectOnSlowMotion) {
+TEST(RateDependentSaturation, HasNoEffectOnSlowMotion) {
   Chain<double> plain(saturating(0.0)), soon(saturating(0.8));
   for (const double p : {40.0, 12.0, 33.0, 0.0}) EXPECT_NEAR(soon.step(1e6, p), plain.step(1e6, p), 1e-4);
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing::rate_dependent_levelling_test
+}  // namespace softgrip::model::testing::rate_dependent_saturation_test
