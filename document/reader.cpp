@@ -210,6 +210,17 @@ std::vector<std::string> MapReader::keys() const {
   return result;
 }
 
+std::string_view MapReader::name_in_use(std::string_view key, std::string_view deprecated) {
+  if (deprecated.empty() || !has(deprecated)) return key;
+  if (!has(key)) return deprecated;
+  bad_.emplace_back(key);
+  problems_.add(document_.problem(find(deprecated)->key_at,
+                                  in_backticks(deprecated) + " is the deprecated name of " +
+                                      in_backticks(key) + ", but " + what_ + " contains both keys",
+                                  "remove " + in_backticks(deprecated)));
+  return key;
+}
+
 Location MapReader::where(std::string_view key) const {
   for (const Node::Entry& entry : node_.entries) {
     if (entry.key == key) return entry.key_at;

@@ -100,6 +100,11 @@ class MapReader {
   [[nodiscard]] bool good(std::string_view key) const;
   /// Returns all keys of the map in the order of the text.
   [[nodiscard]] std::vector<std::string> keys() const;
+  /// Returns the name under which the map contains a value that has a deprecated name: `deprecated` if the
+  /// map contains this name and not `key`, otherwise `key`. The caller reads the value under the returned
+  /// name. Reports a problem if the map contains both names. An empty `deprecated` means that there is no
+  /// such name.
+  [[nodiscard]] std::string_view name_in_use(std::string_view key, std::string_view deprecated);
   /// Returns the location of a key, or the location of the map if it does not contain the key.
   [[nodiscard]] Location where(std::string_view key) const;
   /// Reports a problem with the value of a key. The caller uses this function for problems that no getter

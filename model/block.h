@@ -7,6 +7,7 @@
 //   template <class T> class ValveLag {
 //    public:
 //     static constexpr BlockInfo info = block_info(...);          // id, station, kind, inverse, texts
+//                                       // Repeatable and Formerly are optional further arguments
 //     static constexpr std::array parameters{parameter(...)};     // the only declaration of the parameters
 //     ValveLag(std::span<const T> values, const Preparation&);
 //     void reset(const T& input);  // see the paragraph "Rest"
@@ -108,24 +109,39 @@ struct BlockInfo {
   std::string_view equation;  ///< equation of the block as plain text
   bool repeatable = false;    ///< true: a chain may contain the block more than once (two stops, two
                               ///< disturbances)
+  /// Deprecated id of the block, which is accepted wherever `id` is accepted; "" if there is none.
+  std::string_view formerly = {};
+
+  /// Returns true if `name` is the id or the deprecated id of the block.
+  [[nodiscard]] constexpr bool is_named(std::string_view name) const {
+    return name == id || (!formerly.empty() && name == formerly);
+  }
 };
 
 /// Argument of block_info() for a block that a chain may contain more than once.
 struct Repeatable {};
 
-/// Returns the description of a block. The arguments have the order of the members of BlockInfo. `meaning` is
-/// a sentence.
-consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
-                               std::string_view title, std::string_view meaning, std::string_view equation) {
-  if (id.empty() || title.empty() || !meaning.ends_with('.'))
-    throw "a block requires an id, a title and a meaning";
-  return {id, station, kind, inverse, title, meaning, equation};
+namespace declaration {
+constexpr void add(BlockInfo& info, Repeatable) {
+  info.repeatable = true;
 }
+constexpr void add(BlockInfo& info, Formerly formerly) {
+  info.formerly = formerly.name;
+}
+}  // namespace declaration
+
+/// Returns the description of a block. The arguments have the order of the members of BlockInfo. `meaning` is
+/// a sentence. `more` can contain Repeatable{} and the deprecated id of the block, as
+/// Formerly{"sensor_wander"}.
+template <class... More>
 consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
                                std::string_view title, std::string_view meaning, std::string_view equation,
-                               Repeatable) {
-  BlockInfo info = block_info(id, station, kind, inverse, title, meaning, equation);
-  info.repeatable = true;
+                               More... more) {
+  BlockInfo info{id, station, kind, inverse, title, meaning, equation};
+  (declaration::add(info, more), ...);
+  if (id.empty() || title.empty() || !meaning.ends_with('.'))
+    throw "a block requires an id, a title and a meaning";
+  if (info.formerly == id) throw "the deprecated id of a block must differ from its id";
   return info;
 }
 

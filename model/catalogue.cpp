@@ -52,8 +52,21 @@ const ParameterSpec& BlockDescriptor::spec(std::size_t index) const {
 }
 
 std::string BlockDescriptor::name(std::size_t index) const {
-  std::string name(spec(index).name);
-  if (index >= parameters.size()) {
+  return numbered(spec(index).name, index);
+}
+
+std::string BlockDescriptor::former_name(std::size_t index) const {
+  return numbered(spec(index).formerly, index);
+}
+
+bool BlockDescriptor::is_named(std::size_t index, std::string_view text) const {
+  return name(index) == text || (!spec(index).formerly.empty() && former_name(index) == text);
+}
+
+/// Returns the declared name of the value `index`, with the number of its part in place of `#`.
+std::string BlockDescriptor::numbered(std::string_view declared, std::size_t index) const {
+  std::string name(declared);
+  if (index >= parameters.size() && !name.empty()) {
     const std::size_t part = (index - parameters.size()) / repeated.size();
     name.replace(name.find('#'), 1, std::to_string(part + 1));
   }
@@ -68,7 +81,7 @@ std::span<const BlockDescriptor> catalogue() {
 std::optional<std::size_t> find_block(std::string_view id) {
   const std::span<const BlockDescriptor> all = catalogue();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].info.id == id) return i;
+    if (all[i].info.is_named(id)) return i;
   }
   return std::nullopt;
 }

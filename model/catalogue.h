@@ -35,12 +35,20 @@ struct BlockDescriptor {
   /// Returns the name of the value `index`. In a repeated part, the name contains the number of the part:
   /// "k2_kpa_per_mm". Throws std::out_of_range if the block has no value with this index.
   [[nodiscard]] std::string name(std::size_t index) const;
+  /// Returns the deprecated name of the value `index`, with the number of the part as in name(). Returns ""
+  /// if the value has no deprecated name.
+  [[nodiscard]] std::string former_name(std::size_t index) const;
+  /// Returns true if `text` is the name or the deprecated name of the value `index`.
+  [[nodiscard]] bool is_named(std::size_t index, std::string_view text) const;
+
+ private:
+  [[nodiscard]] std::string numbered(std::string_view declared, std::size_t index) const;
 };
 
 /// Returns all block types. The index of a type in the result is BlockSpec::type.
 [[nodiscard]] std::span<const BlockDescriptor> catalogue();
 
-/// Returns the index of the block type with this id; nullopt if no type has this id.
+/// Returns the index of the block type with this id or deprecated id; nullopt if no type has this id.
 [[nodiscard]] std::optional<std::size_t> find_block(std::string_view id);
 
 }  // namespace softgrip::model

@@ -59,6 +59,15 @@ void check_order(const Model& model, std::vector<std::string>& wrong) {
   if (!has_element) wrong.emplace_back("the actuator has no element that turns pressure into displacement");
 }
 
+/// Returns the number of a block in paths: "_2" for the second block of a type, "" for the first block.
+std::string number_in_path(const Model& model, std::size_t block) {
+  const auto end = model.blocks.begin() + static_cast<std::ptrdiff_t>(block);
+  const auto before = std::count_if(model.blocks.begin(), end, [&](const BlockSpec& other) {
+    return other.type == model.blocks[block].type;
+  });
+  return before > 0 ? "_" + std::to_string(before + 1) : "";
+}
+
 }  // namespace
 
 std::vector<std::string> validate(const Model& model) {
@@ -129,7 +138,7 @@ std::string parameter_name(const BlockSpec& block, std::size_t index) {
 
 std::optional<std::size_t> find_parameter(const BlockSpec& block, std::string_view name) {
   for (std::size_t i = 0; i < block.values.size(); ++i) {
-    if (parameter_name(block, i) == name) return i;
+    if (catalogue()[block.type].is_named(i, name)) return i;
   }
   return std::nullopt;
 }
@@ -152,18 +161,32 @@ ParameterPlace place_of(const Model& model, std::size_t flat_index) {
 std::string parameter_path(const Model& model, std::size_t flat_index) {
   const ParameterPlace place = place_of(model, flat_index);
   const BlockSpec& block = model.blocks[place.block];
-  const auto same_type =
-      std::count_if(model.blocks.begin(), model.blocks.begin() + static_cast<std::ptrdiff_t>(place.block),
-                    [&](const BlockSpec& b) { return b.type == block.type; });
-  std::string path(info_of(block).id);
-  if (same_type > 0) path += "_" + std::to_string(same_type + 1);
-  return path + "." + parameter_name(block, place.value);
+  return std::string(info_of(block).id) + number_in_path(model, place.block) + "." +
+         parameter_name(block, place.value);
+}
+
+std::string former_path(const Model& model, std::size_t flat_index) {
+  const ParameterPlace place = place_of(model, flat_index);
+  const BlockDescriptor& descriptor = catalogue()[model.blocks[place.block].type];
+  const std::string_view id = descriptor.info.formerly;
+  const std::string name = descriptor.former_name(place.value);
+  if (id.empty() && name.empty()) return "";
+  return std::string(id.empty() ? descriptor.info.id : id) + number_in_path(model, place.block) + "." +
+         (name.empty() ? descriptor.name(place.value) : name);
 }
 
 std::optional<std::size_t> find_path(const Model& model, std::string_view path) {
-  const std::size_t count = parameter_count(model);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (parameter_path(model, i) == path) return i;
+  const std::size_t dot = path.find('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  std::size_t flat_index = 0;
+  for (std::size_t i = 0; i < model.blocks.size(); ++i) {
+    const BlockSpec& block = model.blocks[i];
+    const std::string number = number_in_path(model, i);
+    std::string_view id = path.substr(0, dot);
+    if (id.ends_with(number) && info_of(block).is_named(id.substr(0, id.size() - number.size()))) {
+      if (const auto value = find_parameter(block, path.substr(dot + 1))) return flat_index + *value;
+    }
+    flat_index += block.values.size();
   }
   return std::nullopt;
 }

@@ -54,13 +54,15 @@ struct Model {
 [[nodiscard]] Model only(Model model, bool (*keep)(const BlockInfo& info));
 
 /// Returns the index of the first block of a type in the model; nullopt if there is none.
+/// The id of the type may be its deprecated id.
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model, std::size_t type);
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model, std::string_view id);
 
 /// Returns the name of the value `index` of a block. In a repeated part, the name contains the number of the
 /// part: "k2_kpa_per_mm".
 [[nodiscard]] std::string parameter_name(const BlockSpec& block, std::size_t index);
-/// Returns the index of the value with this name in a block; nullopt if the block has no such value.
+/// Returns the index of the value with this name or deprecated name in a block; nullopt if the block has no
+/// such value.
 [[nodiscard]] std::optional<std::size_t> find_parameter(const BlockSpec& block, std::string_view name);
 
 /// The position of one value in a model.
@@ -77,7 +79,11 @@ struct ParameterPlace {
 /// Returns the path of a value, for example "kelvin_voigt.k2_kpa_per_mm". From the second block of the same
 /// type on, the path contains the number of the block: "contact_2.position_mm".
 [[nodiscard]] std::string parameter_path(const Model& model, std::size_t flat_index);
-/// Returns the flat index of the value with this path; nullopt if the model has no such value.
+/// Returns the path of a value with the deprecated names of its block and its parameter. Returns "" if
+/// neither of them has a deprecated name.
+[[nodiscard]] std::string former_path(const Model& model, std::size_t flat_index);
+/// Returns the flat index of the value with this path; nullopt if the model has no such value. The path may
+/// contain deprecated names.
 [[nodiscard]] std::optional<std::size_t> find_path(const Model& model, std::string_view path);
 /// Returns the declaration of the parameter whose value has this flat index.
 [[nodiscard]] const ParameterSpec& parameter_spec(const Model& model, std::size_t flat_index);

@@ -35,6 +35,9 @@ struct ParameterSpec {
   /// Value that is used if a model file omits the parameter. With this value, a file that is older than the
   /// parameter keeps its meaning. NaN: the file must contain the parameter.
   double if_left_out = std::numeric_limits<double>::quiet_NaN();
+  /// Deprecated name of the parameter, which is accepted wherever `name` is accepted; "" if there is none. In
+  /// a repeated part, it contains `#` as `name` does.
+  std::string_view formerly = {};
 };
 
 // Named arguments of parameter(). Each argument sets one member of ParameterSpec.
@@ -57,6 +60,10 @@ struct Whole {};
 struct Placed {};
 struct Latency {};
 struct PerPressure {};
+/// Deprecated name of a parameter or a block.
+struct Formerly {
+  std::string_view name;
+};
 
 namespace declaration {
 constexpr void add(ParameterSpec& spec, Neutral neutral) {
@@ -77,12 +84,16 @@ constexpr void add(ParameterSpec& spec, Latency) {
 constexpr void add(ParameterSpec& spec, PerPressure) {
   spec.per_pressure = true;
 }
+constexpr void add(ParameterSpec& spec, Formerly formerly) {
+  spec.formerly = formerly.name;
+}
 }  // namespace declaration
 
 /// Declares one parameter:
 ///   parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5}, Within{-1e5, 1e5}, Scale{1.0},
 ///   Neutral{0.0})
-/// A typical or neutral value outside the limits of the parameter is a compile error.
+/// A typical or neutral value outside the limits of the parameter is a compile error, and so is a deprecated
+/// name that equals the name.
 template <class... More>
 consteval ParameterSpec parameter(std::string_view name, std::string_view unit, std::string_view meaning,
                                   Typical typical, Within within, Scale scale, More... more) {
@@ -95,6 +106,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
       !(spec.scale > 0)) {
     throw "the values of a parameter must be within its bounds, and its scale must be above 0";
   }
+  if (spec.formerly == name) throw "the deprecated name of a parameter must differ from its name";
   return spec;
 }
 

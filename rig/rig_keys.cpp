@@ -154,14 +154,8 @@ void declare_wiring(RigKeys& keys) {
 /// Reads `overrun_cycles`, whose deprecated name is `slipped_cycles`.
 void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultSettings& faults) {
   constexpr document::Range any{0, 100'000};
-  const std::string old_name = "slipped_cycles";
-  const bool renamed = reader.has(old_name);
-  faults.overrun_cycles = static_cast<std::uint32_t>(reader.integer(renamed ? old_name : key.name, any));
-  if (!renamed || reader.child(key.name, false) == nullptr) return;
-  (void)reader.integer(key.name, any);
-  reader.report(old_name,
-                "`" + old_name + "` is the old name of `overrun_cycles`, but the file contains both keys",
-                "overrun_cycles alone");
+  const std::string_view name = reader.name_in_use(key.name, "slipped_cycles");
+  faults.overrun_cycles = static_cast<std::uint32_t>(reader.integer(name, any));
 }
 
 void declare_safety(RigKeys& keys) {

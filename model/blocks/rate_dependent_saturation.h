@@ -12,16 +12,17 @@ template <class T>
 class RateDependentSaturation : public BoucWenPart<T> {
  public:
   static constexpr BlockInfo info = block_info(
-      "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
+      "rate_dependent_saturation", Station::actuator, Kind::element, Inverse::implicit,
       "Rate-dependent saturation",
       "The width of the hysteresis loop depends on the rate of pressure change, because bouc_wen saturates "
       "at a smaller amplitude if the rate of pressure change is high.",
-      "bouc_wen: eta is replaced by eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");  // words-ok
+      "bouc_wen: eta is replaced by eta (1 + saturation r/(r + rate)), settling r' = |p'| - r",
+      Formerly{"rate_dependent_levelling"});
   static constexpr std::array parameters{
       parameter(
-          "levelling", "",
+          "saturation", "",
           "largest relative increase of eta of bouc_wen, which is reached at high rates of pressure change",
-          Typical{0.2}, Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
+          Typical{0.2}, Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}, Formerly{"levelling"}),
       parameter("rate_kpa_per_s", "kPa/s",
                 "rate of pressure change at which half of the largest increase is reached", Typical{20.0},
                 Within{0.01, 1e5}, Scale{10.0}, IfLeftOut{20.0}),

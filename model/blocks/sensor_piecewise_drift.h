@@ -15,9 +15,10 @@ template <class T>
 class SensorPiecewiseDrift {
  public:
   static constexpr BlockInfo info = block_info(
-      "sensor_free_drift", Station::sensor, Kind::reading, Inverse::ignored, "Free sensor drift",
+      "sensor_piecewise_drift", Station::sensor, Kind::reading, Inverse::ignored,
+      "Piecewise linear sensor drift",
       "The zero offset of the sensor is a piecewise linear function of time, with knots at equal intervals.",
-      "z = y + straight lines through knot1, knot2 ... every interval");
+      "z = y + straight lines through knot1, knot2 ... every interval", Formerly{"sensor_free_drift"});
   static constexpr std::array parameters{parameter("knot_interval_s", "s", "time between two knots",
                                                    Typical{30.0}, Within{0.1, 1e5}, Scale{10.0},
                                                    IfLeftOut{30.0})};

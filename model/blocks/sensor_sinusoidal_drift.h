@@ -15,16 +15,16 @@ template <class T>
 class SensorSinusoidalDrift {
  public:
   static constexpr BlockInfo info =
-      block_info("sensor_wander", Station::sensor, Kind::reading, Inverse::ignored, "Sinusoidal sensor drift",
-                 "The zero offset of the sensor drifts slowly and sinusoidally.",
-                 "z = y + a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)");
+      block_info("sensor_sinusoidal_drift", Station::sensor, Kind::reading, Inverse::ignored,
+                 "Sinusoidal sensor drift", "The zero offset of the sensor drifts slowly and sinusoidally.",
+                 "z = y + a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)", Formerly{"sensor_wander"});
   static constexpr std::array parameters{
-      parameter("wander_sin_mm", "mm", "amplitude a of the sine component of the drift", Typical{0.1},
-                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}, IfLeftOut{0.0}),
-      parameter("wander_cos_mm", "mm", "amplitude b of the cosine component of the drift", Typical{0.1},
-                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}, IfLeftOut{0.0}),
-      parameter("wander_period_s", "s", "period of the sinusoidal drift", Typical{300.0}, Within{1.0, 1e5},
-                Scale{30.0}, IfLeftOut{300.0})};
+      parameter("drift_sin_mm", "mm", "amplitude a of the sine component of the drift", Typical{0.1},
+                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}, IfLeftOut{0.0}, Formerly{"wander_sin_mm"}),
+      parameter("drift_cos_mm", "mm", "amplitude b of the cosine component of the drift", Typical{0.1},
+                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}, IfLeftOut{0.0}, Formerly{"wander_cos_mm"}),
+      parameter("drift_period_s", "s", "period of the sinusoidal drift", Typical{300.0}, Within{1.0, 1e5},
+                Scale{30.0}, IfLeftOut{300.0}, Formerly{"wander_period_s"})};
 
   SensorSinusoidalDrift(std::span<const T> values, const Preparation&)
       : sin_mm_(values[0]), cos_mm_(values[1]), period_s_(values[2]) {}

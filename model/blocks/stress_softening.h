@@ -19,15 +19,16 @@ class StressSoftening {
       "stress_softening", Station::actuator, Kind::pressure, Inverse::implicit, "Stress softening",
       "The finger becomes permanently softer when the pressure exceeds its largest previous value (Mullins "
       "effect).",
-      "q = p (1 + softening m/(1 + levelling m)), m = largest pressure so far");  // words-ok: a key
+      "q = p (1 + softening m/(1 + saturation m)), m = largest pressure so far");
   static constexpr std::array parameters{
       parameter("softening_per_kpa", "1/kPa",
                 "relative increase of the gain per kPa of the largest previous pressure", Typical{0.002},
                 Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
-      parameter("levelling_per_kpa", "1/kPa",
+      parameter("saturation_per_kpa", "1/kPa",
                 "saturation of the softening: with a value above 0, the softening approaches a limit at high "
                 "pressures",
-                Typical{0.02}, Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0}, IfLeftOut{0.0})};
+                Typical{0.02}, Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0}, IfLeftOut{0.0},
+                Formerly{"levelling_per_kpa"})};
 
   StressSoftening(std::span<const T> values, const Preparation&)
       : softening_per_kpa_(values[0]), saturation_per_kpa_(values[1]) {}

@@ -41,13 +41,15 @@ double read_value(MapReader& map, const ParameterSpec& spec, const std::string& 
 // Returns the number of repeated parts in a block: the largest number in its keys (k1, c1, k2, c2, ...), but
 // at least min_parts.
 std::size_t count_parts(const MapReader& map, const BlockDescriptor& descriptor) {
+  const std::vector<std::string> keys = map.keys();
+  const auto given = [&](std::size_t index) {
+    return std::any_of(keys.begin(), keys.end(),
+                       [&](const std::string& key) { return descriptor.is_named(index, key); });
+  };
+  const std::size_t first = descriptor.parameters.size(), size = descriptor.repeated.size();
   std::size_t parts = 0;
-  for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
-    for (const ParameterSpec& spec : descriptor.repeated) {
-      std::string name(spec.name);
-      name.replace(name.find('#'), 1, std::to_string(part));
-      if (map.has(name)) parts = part;
-    }
+  for (std::size_t i = 0; i < descriptor.max_parts * size; ++i) {
+    if (given(first + i)) parts = i / size + 1;
   }
   return std::max(parts, descriptor.min_parts);
 }
@@ -200,7 +202,10 @@ class ModelReader {
     for (const BlockSpec& block : model.blocks) {
       const BlockInfo& other = catalogue()[block.type].info;
       if (other.id == info.id && !info.repeatable) {
-        problems_.add(document_.problem(entry.key_at, std::string(info.id) + " occurs twice in the chain"));
+        const std::string id(info.id);
+        problems_.add(document_.problem(
+            entry.key_at, id + " occurs twice in the chain",
+            info.formerly.empty() ? "" : std::string(info.formerly) + " is the deprecated name of " + id));
       }
       if (other.station == info.station && other.kind > info.kind) {
         problems_.add(document_.problem(
@@ -217,7 +222,7 @@ class ModelReader {
     const std::size_t parts = descriptor.repeated.empty() ? 0 : count_parts(map, descriptor);
     BlockSpec block = neutral_block(type, parts);
     for (std::size_t i = 0; i < block.values.size(); ++i) {
-      const std::string name = parameter_name(block, i);
+      const std::string name(map.name_in_use(descriptor.name(i), descriptor.former_name(i)));
       if (absent_is_neutral && map.child(name, false) == nullptr) continue;
       block.values[i] = read_value(map, descriptor.spec(i), name);
     }
@@ -298,7 +303,13 @@ std::optional<Model> load_rig_model(const std::string& path, Problems& problems)
   return load(path, problems, read_rig_model);
 }
 
-std::string to_yaml(const Model& model) {
+namespace {
+
+/// Names of blocks and parameters in the text of a model.
+enum class Names { present, deprecated };
+
+std::string yaml_of(const Model& model, Names names) {
+  const bool deprecated = names == Names::deprecated;
   std::string text = "name: " + double_quoted(model.name) + "\nsource: " + double_quoted(model.source) + "\n";
   if (model.output_unit != OutputUnit::mm)
     text += std::string(output_unit_key) + ": " + std::string(name_of(model.output_unit)) + "\n";
@@ -309,18 +320,27 @@ std::string to_yaml(const Model& model) {
       if (info.station != station) continue;
       if (!any) text += std::string(name_of(station)) + ":\n";
       any = true;
-      text += "  - " + std::string(info.id) + ":\n";
+      text += "  - " + std::string(deprecated && !info.formerly.empty() ? info.formerly : info.id) + ":\n";
       for (std::size_t i = 0; i < block.values.size(); ++i) {
-        text += "      " + parameter_name(block, i) + ": " + shortest(block.values[i]) + "\n";
+        const BlockDescriptor& descriptor = catalogue()[block.type];
+        const bool renamed = deprecated && !descriptor.spec(i).formerly.empty();
+        text += "      " + (renamed ? descriptor.former_name(i) : descriptor.name(i)) + ": " +
+                shortest(block.values[i]) + "\n";
       }
     }
   }
   return text;
 }
 
+}  // namespace
+
+std::string to_yaml(const Model& model) {
+  return yaml_of(model, Names::present);
+}
+
 std::string model_hash(const Model& model) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : to_yaml(model)) {
+  for (const char c : yaml_of(model, Names::deprecated)) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   }
   std::array<char, 17> digits{};

@@ -10,8 +10,9 @@
 //     - bouc_wen: {alpha_mm_per_kpa: 0.21105, ..., exponent: 1}
 //     - kelvin_voigt: {k0_kpa_per_mm: 325.9, k1_kpa_per_mm: 18.16, c1_kpa_s_per_mm: 299.8, ...}
 //
-// A station without blocks may be omitted, or it may be an empty list. With `output_unit: deg`, the output of
-// the model is a bending angle, and `mm` in the names of parameters means deg.
+// A station without blocks may be omitted, or it may be an empty list. The names of blocks and parameters may
+// be deprecated names (see block.h); a written file contains the present names. With `output_unit: deg`, the
+// output of the model is a bending angle, and `mm` in the names of parameters means deg.
 
 #include <cstdint>
 #include <optional>
@@ -43,7 +44,8 @@ namespace softgrip::model {
 
 /// Returns 16 hexadecimal digits that identify the blocks and numbers of a model in provenance records. The
 /// digits are the FNV-1a hash (64 bit) of the text that to_yaml() returns. The hash does not depend on the
-/// machine, and changes if any digit of a number changes.
+/// machine, and changes if any digit of a number changes. In the hashed text, deprecated names replace the
+/// present names, so that a hash in an older record remains valid.
 [[nodiscard]] std::string model_hash(const Model& model);
 
 }  // namespace softgrip::model

@@ -18,18 +18,6 @@ bool looks_like(const std::string& text, std::string_view shape) {
          });
 }
 
-/// Returns the action of a note from the key `action`, or from its deprecated name `mended`.
-std::string action_of(document::MapReader& reader) {
-  const std::optional<std::string> deprecated = reader.optional_text("mended");
-  if (!deprecated) return reader.text("action");
-  if (reader.optional_text("action"))
-    reader.report(
-        "mended",
-        "this key is the deprecated name of the key action, and the note already contains the key action",
-        "only the key action");
-  return *deprecated;
-}
-
 }  // namespace
 
 std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
@@ -40,7 +28,8 @@ std::optional<std::vector<Note>> read_notes(const std::string& path, std::string
   document::MapReader top(document, document.root, problems, "the notes");
   for (const document::Node* item : top.sequence("notes", true)) {
     document::MapReader reader(document, *item, problems, "a note");
-    Note note{reader.text("date"), reader.optional_text("finger").value_or(""), action_of(reader)};
+    Note note{reader.text("date"), reader.optional_text("finger").value_or(""),
+              reader.text(reader.name_in_use("action", "mended"))};
     if (reader.good("date") && !looks_like(note.date, "0000-00-00") &&
         !looks_like(note.date, "0000-00-00T00:00:00Z"))
       reader.report("date", "this is not a date in UTC", "2026-11-03, or 2026-11-03T14:30:00Z");

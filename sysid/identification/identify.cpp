@@ -1,9 +1,12 @@
 #include "sysid/identification/identify.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "base/numbers.h"
 #include "base/statistics.h"
@@ -33,24 +36,24 @@ struct FreeIndices {
 
 tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
                                                     const IdentifyOptions& options) {
-  for (const auto* list : {&options.fixed, &options.free}) {
+  std::array<std::set<std::size_t>, 2> indices;
+  for (auto [list, into] : {std::pair(&options.fixed, &indices[0]), std::pair(&options.free, &indices[1])}) {
     for (const std::string& path : *list) {
-      if (!model::find_path(model, path)) return Failure("the model has no parameter '" + path + "'");
+      const auto index = model::find_path(model, path);
+      if (!index) return Failure("the model has no parameter '" + path + "'");
+      into->insert(*index);
     }
   }
-  const auto listed = [](const std::vector<std::string>& list, const std::string& path) {
-    return std::find(list.begin(), list.end(), path) != list.end();
-  };
-  const std::string alpha = "bouc_wen.alpha_mm_per_kpa";
-  const bool alpha_free = model::find_path(model, alpha) && !listed(options.fixed, alpha) &&
-                          (options.free.empty() || listed(options.free, alpha));
+  const auto& [fixed, chosen] = indices;
+  const auto alpha = model::find_path(model, "bouc_wen.alpha_mm_per_kpa");
+  const auto k0 = model::find_path(model, "kelvin_voigt.k0_kpa_per_mm");
+  const bool alpha_free = alpha && !fixed.contains(*alpha) && (chosen.empty() || chosen.contains(*alpha));
   FreeIndices free;
   for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
-    const std::string path = model::parameter_path(model, i);
     const model::ParameterSpec& spec = model::parameter_spec(model, i);
-    if (spec.whole || listed(options.fixed, path)) continue;
-    if (options.free.empty() ? spec.placed : !listed(options.free, path)) continue;
-    if (path == "kelvin_voigt.k0_kpa_per_mm" && alpha_free) {
+    if (spec.whole || fixed.contains(i)) continue;
+    if (chosen.empty() ? spec.placed : !chosen.contains(i)) continue;
+    if (i == k0 && alpha_free) {
       free.k0_kept = true;
       continue;
     }

@@ -94,7 +94,8 @@ TEST(RigFile, ADeprecatedKeyIsReadButRefusedBesideTheNewKey) {
   }
   Problems problems;
   EXPECT_FALSE(read("  slipped_cycles: 7\n  overrun_cycles: 7", problems));
-  EXPECT_NE(problems.format().find("`slipped_cycles` is the old name of `overrun_cycles`"), std::string::npos)
+  EXPECT_NE(problems.format().find("`slipped_cycles` is the deprecated name of `overrun_cycles`"),
+            std::string::npos)
       << problems.format();
 }
 

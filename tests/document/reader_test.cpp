@@ -33,6 +33,18 @@ void use_delay(MapReader& reader) {
   reader.number("delay_s", {0, 10});
 }
 
+TEST(Reader, ReadsAValueUnderItsDeprecatedName) {
+  const auto use = [](MapReader& reader) {
+    EXPECT_EQ(reader.integer(reader.name_in_use("new", "old"), {0, 9}), reader.keys().empty() ? 0 : 7);
+  };
+  EXPECT_EQ(reported("new: 7\n", use), Lines{});
+  EXPECT_EQ(reported("old: 7\n", use), Lines{});
+  EXPECT_EQ(
+      reported("new: 7\nold: 3\n", use),
+      Lines{"2:1: `old` is the deprecated name of `new`, but the map contains both keys | remove `old`"});
+  EXPECT_EQ(reported("{}\n", use), Lines{"1:1: the map lacks the key `new`"});
+}
+
 TEST(Reader, ReadsEveryTypeOfValue) {
   const Lines lines = reported("n: 0.5\ni: -3\nb: true\nt: hello\nc: two\nl: [1, 2]\nm: {k: 1}\ns: [x]\n",
                                [](MapReader& reader) {

@@ -65,12 +65,14 @@ void write_parameter(std::ostream& out, const ParameterSpec& spec) {
       << (spec.whole ? ", whole" : "") << " | " << (spec.neutral == spec.neutral ? range(spec.neutral) : "-")
       << " | " << spec.meaning;
   if (spec.if_left_out == spec.if_left_out) out << " (optional, default " << range(spec.if_left_out) << ")";
+  if (!spec.formerly.empty()) out << "; deprecated name: `" << spec.formerly << "`";
   out << " |\n";
 }
 
 void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   const BlockInfo& info = descriptor.info;
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
+  if (!info.formerly.empty()) out << "Deprecated name: `" << info.formerly << "`.\n\n";
   out << "    " << info.equation << "\n\n";
   out << what_it_does(info.kind) << " " << how_undone(info.inverse)
       << (info.repeatable ? " A model may contain the block more than once." : "") << "\n\n";
@@ -102,6 +104,12 @@ std::string page() {
          "A model file must state every parameter "
          "that is"
          " not marked as optional. softgrip refuses a model file with a value outside the allowed range.\n\n"
+         "Some blocks and parameters have a deprecated name. Model files and the options `--fix` and "
+         "`--free` "
+         "of `softgrip identify` accept the name and the deprecated name. A block must not contain both "
+         "names "
+         "of a parameter. softgrip writes model files without deprecated names. In `identify.json` and "
+         "`diagnosis.json`, a parameter with a deprecated name has two keys with the same content.\n\n"
          "If a model file has `output_unit: deg`, the output of the model is a bending angle, "
          "and mm means deg in all keys and units on this page. Without the key `output_unit`, the output of "
          "the model is a displacement in mm."

@@ -146,7 +146,7 @@ TEST(ChainDerivatives, AreNonzeroAtNeutralValues) {
                                "asymmetric_bouc_wen",
                                "relaxing_friction",
                                "rate_dependent_width",
-                               "rate_dependent_levelling",
+                               "rate_dependent_saturation",
                                "stiffening",
                                "thermal_gain",
                                "ageing",
@@ -159,13 +159,13 @@ TEST(ChainDerivatives, AreNonzeroAtNeutralValues) {
                                "sensor_nonlinearity",
                                "sensor_drift",
                                "sensor_warm_up",
-                               "sensor_wander",
-                               "sensor_free_drift",
+                               "sensor_sinusoidal_drift",
+                               "sensor_piecewise_drift",
                                "periodic_disturbance"}) {
     const Model model = with_block(twin, neutral_block(*find_block(id)));
     const BlockSpec& block = model.blocks[*position_of(model, id)];
     const std::size_t index = *find_path(
-        model, id + "." + parameter_name(block, id == "contact" || id == "sensor_free_drift" ? 1 : 0));
+        model, id + "." + parameter_name(block, id == "contact" || id == "sensor_piecewise_drift" ? 1 : 0));
     double largest = 0;
     for (const Jet& y : readings_with_derivatives(model, SignalName::tp1, dt)) {
       largest = std::fmax(largest, std::fabs(y.v[static_cast<int>(index)]));

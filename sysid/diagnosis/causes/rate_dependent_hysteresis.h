@@ -64,7 +64,7 @@ struct RateDependentHysteresis {
   };
   /// Form of the cause: the saturation value of the hysteretic state depends on the rate of the pressure.
   struct Saturating : Following<model::RateDependentSaturation> {
-    static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
+    static Starts starts(const Scales& s) { return sized("saturation", {-0.3, 0.5, 3.0}, s); }
   };
 
   using Forms = List<Relaxing, Growing, Saturating>;

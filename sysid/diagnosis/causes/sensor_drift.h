@@ -56,9 +56,9 @@ struct SensorDrift {
         for (const double size_mm : {0.004 * s.span_mm, 0.016 * s.span_mm}) {
           for (int eighth = 0; eighth < 8; ++eighth) {
             const double angle = eighth * std::numbers::pi / 4;
-            starts.push_back(start({{"wander_sin_mm", size_mm * std::cos(angle)},
-                                    {"wander_cos_mm", size_mm * std::sin(angle)},
-                                    {"wander_period_s", campaigns * s.campaign_s}}));
+            starts.push_back(start({{"drift_sin_mm", size_mm * std::cos(angle)},
+                                    {"drift_cos_mm", size_mm * std::sin(angle)},
+                                    {"drift_period_s", campaigns * s.campaign_s}}));
           }
         }
       }
@@ -67,7 +67,7 @@ struct SensorDrift {
     /// The period is at least 1/12 of the duration of the measurement campaign and at most 3 times this
     /// duration. With a longer period, the data would contain only a trend.
     static Bounds bounds(const Scales& s, const model::Model&) {
-      return {{"wander_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
+      return {{"drift_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
     }
   };
 

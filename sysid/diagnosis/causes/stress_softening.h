@@ -21,7 +21,7 @@ struct StressSoftening {
   struct Proportional : FormOf<model::StressSoftening> {
     static constexpr std::array<Parameter, 1> fitted{"softening_per_kpa"};
     static bool holds(const model::BlockSpec& block) {
-      return block.values[Parameter("levelling_per_kpa").index] == 0;
+      return block.values[Parameter("saturation_per_kpa").index] == 0;
     }
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}}});
@@ -31,7 +31,7 @@ struct StressSoftening {
   struct Saturating : FormOf<model::StressSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.5 / s.largest_kpa}},
-                    {"levelling_per_kpa", {1.0 / s.largest_kpa, 5.0 / s.largest_kpa}}});
+                    {"saturation_per_kpa", {1.0 / s.largest_kpa, 5.0 / s.largest_kpa}}});
     }
   };
 

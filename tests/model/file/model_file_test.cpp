@@ -132,7 +132,7 @@ std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& 
 // The first version of the file format does not have these parameters. They are optional, so that files of
 // the first version have the same meaning as before.
 TEST(ModelFile, ParametersOfLaterVersionsAreOptional) {
-  EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
+  EXPECT_EQ(blocks_of("sensor", "sensor_sinusoidal_drift: {drift_sin_mm: 0.1}"),
             (std::vector<BlockSpec>{{block_type<SensorSinusoidalDrift>(), {0.1, 0, 300}}}));
   EXPECT_EQ(blocks_of("actuator", "asymmetric_bouc_wen: {epsilon_per_kpa: 0.01}"),
             (std::vector<BlockSpec>{{block_type<AsymmetricBoucWen>(), {0, 0.01, 0}}}));
@@ -189,6 +189,9 @@ TEST(ModelFile, ConvertsFormerBlocksToPresentBlocks) {
        {{block_type<RateDependentWidth>(), {0.2, 15, 0.1}}}},
       {"actuator",
        "rate_dependent_hysteresis: {gain_mm_per_kpa: 0, width_kpa: 10, time_constant_s: 1, levelling: 0.4}",
+       {{block_type<RateDependentSaturation>(), {0.4, 20, 0.05}}}},
+      {"actuator",
+       "rate_dependent_hysteresis: {gain_mm_per_kpa: 0, width_kpa: 10, time_constant_s: 1, saturation: 0.4}",
        {{block_type<RateDependentSaturation>(), {0.4, 20, 0.05}}}},
       {"actuator", "ageing: {gain_per_h: 0.1}", {{block_type<Ageing>(), {0.1}}}},
       {"actuator",

@@ -52,7 +52,7 @@ TEST(Downstream, EqualsTheFullSimulationOfDownstreamChains) {
   const std::vector<std::vector<const char*>> chains{
       {"stiffening"},        {"thermal_gain"},      {"ageing"},
       {"running_in"},        {"contact"},           {"sensor_nonlinearity"},
-      {"sensor_drift"},      {"sensor_warm_up"},    {"sensor_free_drift"},
+      {"sensor_drift"},      {"sensor_warm_up"},    {"sensor_piecewise_drift"},
       {"sensor_saturation"}, {"contact", "ageing"}, {"thermal_gain", "contact", "periodic_disturbance"}};
   for (const auto& chain : chains) {
     SCOPED_TRACE(chain.front());
