@@ -18,10 +18,13 @@ Value interval_value(const std::optional<Interval>& interval) {
 
 Fields fields_of_cause(const ChangeCause& cause) {
   Fields parameters;
-  for (std::size_t i = 0; i < cause.fitted.numbers.size(); ++i)
-    parameters.emplace_back(
-        cause.fitted.effect.numbers[i].name,
-        Fields{{"value", cause.fitted.numbers[i]}, {"ci95", interval_value(cause.intervals.numbers[i])}});
+  for (std::size_t i = 0; i < cause.fitted.numbers.size(); ++i) {
+    const EffectNumber& number = cause.fitted.effect.numbers[i];
+    const Fields fitted{{"value", cause.fitted.numbers[i]},
+                        {"ci95", interval_value(cause.intervals.numbers[i])}};
+    parameters.emplace_back(number.name, fitted);
+    parameters.emplace_back(number.formerly, fitted);  // an empty key is not written
+  }
   const Fields size{{"what", cause.size.what},
                     {"value", cause.size.value},
                     {"unit", model::in_unit(cause.size.unit, cause.output_unit)},
@@ -77,7 +80,8 @@ Fields fields_of(const JudgedChange& judged) {
   return {
       {"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
       {"unit", unit},
-      {"base", "baseline model", judged.base},
+      {"structure", "baseline model", judged.base},
+      {"base", judged.base},  // this key is deprecated
       {"noise", "noise of the readings", number(judged.noise_mm, 2, unit)},
       {"healthy_runs", "healthy logs", judged.healthy_runs},
       {"healthy_heldout_rms", "error of left-out healthy runs", number(judged.healthy_mm, 3, unit)},
@@ -111,11 +115,13 @@ Fields fields_of(const ChangeDiagnosis& d) {
           {"heldout_rmse_mm", Fields{{"as_given", finger.later_mm},
                                      {"recalibrated", finger.later_mm},
                                      {"extended", finger.explained_mm}}},
-          {"gain_percent", Fields{{"value", gain}, {"ci95", Value()}}},
+          {"error_reduction_percent", Fields{{"value", gain}, {"ci95", Value()}}},
+          {"gain_percent", Fields{{"value", gain}, {"ci95", Value()}}},  // this key is deprecated
           {"unexplained_percent",
            excess > 0 ? std::clamp(100 * (finger.loss_left - 1) / excess, 0.0, 100.0) : 0.0},
           {"partial_causes", Value::List()},
-          {"base", finger.base},
+          {"structure", finger.base},
+          {"base", finger.base},  // this key is deprecated
           {"next_experiment", Value()},
           {"readings", list_of(d.readings)},
           {"warnings", d.warnings},

@@ -101,7 +101,8 @@ class Collector {
       const Range range = form.range(i, scales_, base_.model);
       fitted.push_back(i);
       effect.numbers.push_back({descriptor.name(i), std::string(spec.unit), spec.scale,
-                                std::max(spec.lower, range.lower), std::min(spec.upper, range.upper)});
+                                std::max(spec.lower, range.lower), std::min(spec.upper, range.upper),
+                                descriptor.former_name(i)});
       effect.nothing.push_back(spec.neutral);
     }
     for (const model::BlockSpec& start : starts) {

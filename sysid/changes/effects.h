@@ -19,6 +19,7 @@ struct EffectNumber {
   std::string name;
   std::string unit;
   double scale = 1, lower = 0, upper = 0;
+  std::string formerly = {};  ///< deprecated name of the parameter; empty: none
 };
 
 /// One form of a cause, stated as an effect on the baseline model.

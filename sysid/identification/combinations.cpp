@@ -24,10 +24,12 @@ double instantaneous(const Model& model) {
 
 void add_hysteresis(std::vector<Combination>& list) {
   const auto bw = [](const Model& m, std::size_t i) { return values_of<model::BoucWen>(m)[i]; };
-  list.push_back({"levelling_growing_per_kpa", "1/kPa", "gamma + eta", 0.01,
-                  [bw](const Model& m) { return bw(m, 2) + bw(m, 3); }});
-  list.push_back({"levelling_shrinking_per_kpa", "1/kPa", "gamma - eta", 0.01,
-                  [bw](const Model& m) { return bw(m, 2) - bw(m, 3); }});
+  list.push_back({"saturation_growing_per_kpa", "1/kPa", "gamma + eta", 0.01,
+                  [bw](const Model& m) { return bw(m, 2) + bw(m, 3); },
+                  model::Formerly{"levelling_growing_per_kpa"}});
+  list.push_back({"saturation_shrinking_per_kpa", "1/kPa", "gamma - eta", 0.01,
+                  [bw](const Model& m) { return bw(m, 2) - bw(m, 3); },
+                  model::Formerly{"levelling_shrinking_per_kpa"}});
   list.push_back({"hysteresis_limit_mm", "mm", "beta / (gamma + eta)", 0,
                   [bw](const Model& m) { return bw(m, 1) / (bw(m, 2) + bw(m, 3)); }});
 }

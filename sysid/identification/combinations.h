@@ -19,6 +19,7 @@ struct Combination {
   double scale = 0;     ///< typical value of the combination, with which the width of its interval is
                         ///< compared
   std::function<double(const model::Model&)> value;
+  model::Formerly formerly = {};  ///< deprecated name of the combination; empty: none
 };
 
 /// Returns all combinations that are defined for the blocks of this model.

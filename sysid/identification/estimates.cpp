@@ -129,16 +129,16 @@ std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
     const auto found = std::find_if(space.free().begin(), space.free().end(), [flat](const FreeParameter& p) {
       return p.kind == FreeParameter::Kind::model && p.flat_index == flat;
     });
+    Estimate& estimate = estimates.emplace_back();
     if (found != space.free().end()) {
-      estimates.push_back(estimate_of(fit, static_cast<std::size_t>(found - space.free().begin())));
-      continue;
+      estimate = estimate_of(fit, static_cast<std::size_t>(found - space.free().begin()));
+    } else {
+      estimate.name = model::parameter_path(model, flat);
+      estimate.unit = model::in_unit(model::parameter_spec(model, flat).unit, model.output_unit);
+      estimate.value = values[flat];
+      estimate.note = "the value was fixed at its start value";
     }
-    Estimate kept;
-    kept.name = model::parameter_path(model, flat);
-    kept.unit = model::in_unit(model::parameter_spec(model, flat).unit, model.output_unit);
-    kept.value = values[flat];
-    kept.note = "the value was fixed at its start value";
-    estimates.push_back(std::move(kept));
+    estimate.formerly = model::former_path(model, flat);
   }
   return estimates;
 }
@@ -177,6 +177,7 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
     };
     Estimate e;
     e.name = combination.name;
+    e.formerly = combination.formerly.name;
     e.unit = model::in_unit(combination.unit, model.output_unit);
     e.formula = combination.formula;
     e.value = value_at(fit.z);

@@ -32,7 +32,8 @@ struct Estimate {
   bool free = false;
   /// True: half the width of the interval is at most half of the value or half of the value's typical change.
   bool identifiable = false;
-  std::string note;  ///< reason why the interval is missing; empty if there is an interval
+  std::string note;           ///< reason why the interval is missing; empty if there is an interval
+  std::string formerly = {};  ///< deprecated name of the value, which JSON files also contain; empty: none
 };
 
 /// Results of the searches from several start points.

@@ -27,7 +27,10 @@ Json estimate(const Estimate& e) {
 
 Json estimates(const std::vector<Estimate>& list) {
   Json json = Json::object();
-  for (const Estimate& e : list) json[e.name] = estimate(e);
+  for (const Estimate& e : list) {
+    json[e.name] = estimate(e);
+    if (!e.formerly.empty()) json[e.formerly] = estimate(e);
+  }
   return json;
 }
 

@@ -92,11 +92,12 @@ struct ResidualEvidence {
 /// Sign that a refitted model is unphysical. The reason is usually an effect that the model structure does
 /// not contain and that the parameters have absorbed.
 struct UnphysicalSign {
-  /// Id of the sign: "wrong_way_first", "stiffness_near_zero", "creep_beyond_data" or "at_bound".
-  std::string id;
+  /// Name of the sign: "inverse_response", "stiffness_near_zero", "creep_beyond_data" or "at_bound".
+  std::string name;
   std::string sentence;
   double value = 0;
   double limit = 0;
+  std::string formerly = {};  ///< deprecated name of the sign; empty: none
 };
 [[nodiscard]] std::vector<UnphysicalSign> unphysical_signs(const model::Model& model,
                                                            const std::vector<Record>& records);

@@ -65,7 +65,7 @@ void add_bounds(const model::Model& model, std::vector<UnphysicalSign>& signs) {
 std::vector<UnphysicalSign> unphysical_signs(const model::Model& model, const std::vector<Record>& records) {
   std::vector<UnphysicalSign> signs;
   if (const double ratio = beta_over_gain(model); ratio > 1)
-    signs.push_back({"wrong_way_first", wrong_way_sentence(ratio) + ".", ratio, 1});
+    signs.push_back({"inverse_response", wrong_way_sentence(ratio) + ".", ratio, 1, "wrong_way_first"});
   add_branches(model, records, signs);
   add_bounds(model, signs);
   return signs;

@@ -12,12 +12,16 @@ using result::Fields, result::keyed, result::list_of, result::or_null, result::s
 
 Fields fields_of_cause(const NamedCause& named, const Budget& budget) {
   Fields parameters;
-  for (const CauseParameter& p : named.parameters) parameters.emplace_back(p.name, parameter_fields("", p));
+  for (const CauseParameter& p : named.parameters) {
+    parameters.emplace_back(p.name, parameter_fields("", p));
+    parameters.emplace_back(p.formerly, parameter_fields("", p));  // an empty key is not written
+  }
   Fields fields{{"id", named.cause.id},
                 {"form", model::catalogue()[named.block_type].info.id},
                 {"station", model::name_of(named.cause.station)},
                 {"parameters", std::move(parameters)},
-                {"heldout_gain_percent", spread_value(named.heldout_gain_percent)},
+                {"heldout_error_reduction_percent", spread_value(named.heldout_gain_percent)},
+                {"heldout_gain_percent", spread_value(named.heldout_gain_percent)},  // this key is deprecated
                 {"inclusion", named.inclusion},
                 {"share_percent", budget.share_percent(named)}};
   if (named.gain_kpa2) {
@@ -108,7 +112,11 @@ Fields fields_of_residual(const ResidualEvidence& r, bool with_bins) {
 
 Fields fields_of_evidence(const Evidence& evidence) {
   const auto of_sign = [](const UnphysicalSign& sign) -> Fields {
-    return {{"id", sign.id}, {"value", sign.value}, {"limit", sign.limit}, {"sentence", sign.sentence}};
+    return {{"name", sign.name},
+            {"id", sign.formerly.empty() ? sign.name : sign.formerly},  // this key is deprecated
+            {"value", sign.value},
+            {"limit", sign.limit},
+            {"sentence", sign.sentence}};
   };
   return {{"as_given", fields_of_residual(evidence.as_given, false)},
           {"recalibrated", fields_of_residual(evidence.recalibrated, true)},
@@ -155,7 +163,8 @@ Fields fields_of_stick_slip(const StickSlipEvidence& stick_slip) {
   return {{"jumps", stick_slip.jumps},
           {"scatter_percent", 100 * stick_slip.scatter},
           {"heldout_rmse_mm", stick_slip.heldout_rmse_mm},
-          {"gain_percent", spread_value(stick_slip.gain_percent)}};
+          {"error_reduction_percent", spread_value(stick_slip.gain_percent)},
+          {"gain_percent", spread_value(stick_slip.gain_percent)}};  // this key is deprecated
 }
 
 }  // namespace
@@ -190,11 +199,13 @@ Fields fields_of(const Diagnosis& d) {
            Fields{{"recalibrated", other_logs},
                   {"extended", extended_other_logs ? extended_other_logs : other_logs}}},
           {"runs", list_of(d.runs, [&](const RunError& run) { return run_fields(d, run); })},
-          {"gain_percent", spread_value(d.gain)},
+          {"error_reduction_percent", spread_value(d.gain)},
+          {"gain_percent", spread_value(d.gain)},  // this key is deprecated
           {"unexplained_percent", "unexplained share",
            shown(d.unexplained_percent, fixed(d.unexplained_percent, 1) + " %")},
           {"budget", fields_of_budget(d, budget)},
-          {"base", or_null(d.base)},
+          {"structure", or_null(d.base)},
+          {"base", or_null(d.base)},  // this key is deprecated
           {"next_experiment", Value()},
           {"null_calibration", or_null(d.null_calibration, fields_of_nulls)},
           {"stick_slip", stick_slip},

@@ -18,6 +18,7 @@ struct CauseParameter {
   double value = 0;
   Interval ci95;
   bool has_interval = false;
+  std::string formerly = {};  ///< deprecated name, which JSON files also contain; empty: none
 
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };

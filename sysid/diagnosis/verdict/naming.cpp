@@ -49,8 +49,10 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
   const model::BlockSpec& block = model.blocks[*position];
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     CauseParameter p;
-    p.name = model::parameter_name(block, i);
-    const model::ParameterSpec& spec = model::catalogue()[block.type].spec(i);
+    const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
+    const model::ParameterSpec& spec = descriptor.spec(i);
+    p.name = descriptor.name(i);
+    p.formerly = descriptor.former_name(i);
     p.unit = model::in_unit(spec.unit, model.output_unit);
     p.value = block.values[i];
     for (std::size_t j = 0; j < at.space.size(); ++j) {

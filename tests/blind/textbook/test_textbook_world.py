@@ -68,7 +68,7 @@ class Valve(unittest.TestCase):
         self.assertEqual(len(rows), 50)
         for row in rows:
             with self.subTest(**row):
-                self.assertLess(float(row["wander_kpa"]), 0.01)
+                self.assertLess(float(row["variation_kpa"]), 0.01)
                 self.assertLess(abs(float(row["pressure_kpa"]) - float(row["command_kpa"])), 0.31)
 
 

@@ -381,6 +381,26 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
   EXPECT_TRUE(reading["unexplained"].is_boolean());
   EXPECT_EQ(reading["structure_left"], reading["unexplained"])
       << "structure_left is the deprecated name of unexplained";
+  EXPECT_EQ(reading["structure"], reading["base"]) << "base is the deprecated name of structure";
+  EXPECT_EQ(json["structure"], json["base"]);
+  EXPECT_FALSE(json["structure"].is_null());
+  EXPECT_GT(json["error_reduction_percent"]["value"], 0);
+  EXPECT_EQ(json["error_reduction_percent"], json["gain_percent"]);
+}
+
+TEST(ChangeResult, ParametersHaveTheDeprecatedNameBesideTheName) {
+  ChangeDiagnosis d;
+  d.readings.emplace_back();
+  ChangeCause& cause = d.causes.emplace_back();
+  cause.id = "stress_softening";
+  cause.fitted.effect.numbers = {{"saturation_per_kpa", "1/kPa", 1, 0, 1, "levelling_per_kpa"},
+                                 {"softening_per_kpa", "1/kPa", 1, 0, 1}};
+  cause.fitted.numbers = {0.02, 0.004};
+  cause.intervals.numbers = {std::nullopt, std::nullopt};
+  const auto parameters = result::json_of(fields_of(d))["causes"][0]["parameters"];
+  EXPECT_EQ(parameters.size(), 3U);
+  EXPECT_EQ(parameters["saturation_per_kpa"]["value"], 0.02);
+  EXPECT_EQ(parameters["levelling_per_kpa"], parameters["saturation_per_kpa"]);
 }
 
 TEST(Change, PageShowsNextStepsAndTheModelError) {

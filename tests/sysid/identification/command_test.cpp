@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/stress_softening.h"
 #include "model/file/model_file.h"
 #include "model/named.h"
 #include "tests/sysid/command_fixture.h"
@@ -50,6 +51,42 @@ TEST_F(Command, IdentifyWritesModelJsonAndReport) {
   ASSERT_EQ(run("validate --model result/model.yaml --data sp1.csv --out checked"), 0) << read("err.txt");
   EXPECT_TRUE(fs::exists(folder_ / "checked/validate.json"));
   EXPECT_EQ(run("validate --model result/model.yaml --data sp1.csv --at-most-percent 0.01"), 6);
+}
+
+TEST_F(Command, IdentifyAcceptsDeprecatedNamesAndWritesThemInJsonOnly) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  const model::BlockSpec softening =
+      model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}, {"saturation_per_kpa", 0.03}});
+  write("model.yaml", model::to_yaml(model::with_block(loaded("zhang2025"), softening)));
+  for (const std::string name : {"saturation_per_kpa", "levelling_per_kpa"}) {
+    ASSERT_EQ(
+        run("identify --starts 1 --start model.yaml --data tp1.csv --out result --fix stress_softening." +
+            name),
+        0)
+        << read("err.txt");
+    const auto json = nlohmann::json::parse(read("result/identify.json"));
+    const auto& fixed = json["parameters"]["stress_softening.saturation_per_kpa"];
+    EXPECT_EQ(fixed["free"], false) << name;
+    EXPECT_EQ(fixed["value"], 0.03) << name;
+    EXPECT_EQ(json["parameters"]["stress_softening.levelling_per_kpa"], fixed);
+    EXPECT_EQ(json["parameters"]["stress_softening.softening_per_kpa"]["free"], true);
+    const auto& combinations = json["combinations"];
+    for (const auto& [now, before] :
+         {std::pair{"saturation_growing_per_kpa", "levelling_growing_per_kpa"},
+          std::pair{"saturation_shrinking_per_kpa", "levelling_shrinking_per_kpa"}}) {
+      EXPECT_TRUE(combinations[now]["value"].is_number()) << now;
+      EXPECT_EQ(combinations[before], combinations[now]);
+    }
+    for (const char* const file : {"out.txt", "result/model.yaml"})
+      EXPECT_EQ(read(file).find("levelling"), std::string::npos) << file;
+    EXPECT_NE(read("out.txt").find("saturation_growing_per_kpa"), std::string::npos) << read("out.txt");
+  }
+  EXPECT_EQ(run("identify --starts 1 --start model.yaml --data tp1.csv --out free --free "
+                "stress_softening.levelling_per_kpa"),
+            0);
+  const auto json = nlohmann::json::parse(read("free/identify.json"));
+  EXPECT_EQ(json["parameters"]["stress_softening.saturation_per_kpa"]["free"], true);
+  EXPECT_EQ(json["parameters"]["stress_softening.softening_per_kpa"]["free"], false);
 }
 
 TEST_F(Command, EveryScoreStatesTheDriveOfTheModel) {

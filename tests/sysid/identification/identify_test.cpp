@@ -103,8 +103,8 @@ TEST(Identify, RecoversParametersOfAnIndependentSimulation) {
   const std::vector<std::pair<std::string, double>> truth{
       {"instantaneous_gain_mm_per_kpa", finger.alpha + 1 / finger.k0},
       {"hysteresis_limit_mm", finger.beta / (finger.gamma + finger.eta)},
-      {"levelling_growing_per_kpa", finger.gamma + finger.eta},
-      {"levelling_shrinking_per_kpa", finger.gamma - finger.eta},
+      {"saturation_growing_per_kpa", finger.gamma + finger.eta},
+      {"saturation_shrinking_per_kpa", finger.gamma - finger.eta},
       {"branch1_time_constant_s", finger.c1 / finger.k1},
       {"branch2_time_constant_s", finger.c2 / finger.k2},
       {"branch1_gain_mm_per_kpa", 1 / finger.k1},

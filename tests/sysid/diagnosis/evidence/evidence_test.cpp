@@ -150,11 +150,12 @@ TEST(Unphysical, InverseResponseZeroStiffnessAndSlowCreepAreFlagged) {
     values[*model::find_path(model, path)] = value;
     std::string ids;
     for (const UnphysicalSign& sign : unphysical_signs(model::with_values(model, values), records))
-      ids += sign.id + " ";
+      ids += sign.name + " " + sign.formerly + " ";
     return ids;
   };
   EXPECT_EQ(signs_of("bouc_wen.beta_mm_per_kpa", 0.2), "");
-  EXPECT_NE(signs_of("bouc_wen.beta_mm_per_kpa", 0.9).find("wrong_way_first"), std::string::npos);
+  EXPECT_NE(signs_of("bouc_wen.beta_mm_per_kpa", 0.9).find("inverse_response wrong_way_first"),
+            std::string::npos);
   EXPECT_NE(signs_of("kelvin_voigt.k1_kpa_per_mm", 0.3).find("stiffness_near_zero"), std::string::npos);
   EXPECT_NE(signs_of("kelvin_voigt.c1_kpa_s_per_mm", 900).find("creep_beyond_data"), std::string::npos);
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "model/blocks/stress_softening.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/named.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
@@ -58,6 +59,16 @@ TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
   d.stick_slip.emplace().jumps = 7;
   d.evidence.emplace().recalibrated.structure_mm = 0.25;
   d.evidence->recalibrated.memory_s = 1.5;
+  d.evidence->unphysical = {{"inverse_response", "a sentence", 2, 1, "wrong_way_first"},
+                            {"at_bound", "a sentence", 0, 0}};
+  d.stick_slip->gain_percent = d.gain = {12, 3, 10, 14};
+  d.base = "two creep branches";
+  d.causes.emplace_back().heldout_gain_percent = {40, 5, 30, 50};
+  d.causes.back().cause = *find_cause("stress_softening");
+  d.causes.back().block_type = model::block_type<model::StressSoftening>();
+  d.causes.back().parameters = {
+      {"saturation_per_kpa", "1/kPa", 0.02, {0.01, 0.03}, true, "levelling_per_kpa"},
+      {"softening_per_kpa", "1/kPa", 0.004, {0.003, 0.005}, true}};
   const auto json = result::json_of(fields_of(d));
   EXPECT_EQ(json.at("stick_slip").at("jumps"), 7);
   EXPECT_EQ(json.at("staircase"), json.at("stick_slip"));
@@ -68,6 +79,25 @@ TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
   EXPECT_EQ(residual.at("structure_mm"), 0.25);
   EXPECT_EQ(residual.at("correlation_time_s"), 1.5);
   EXPECT_EQ(residual.at("memory_s"), 1.5);
+  const auto& signs = json.at("evidence").at("unphysical_recalibration");
+  EXPECT_EQ(signs.at(0).at("name"), "inverse_response");
+  EXPECT_EQ(signs.at(0).at("id"), "wrong_way_first");
+  EXPECT_EQ(signs.at(1).at("name"), "at_bound");
+  EXPECT_EQ(signs.at(1).at("id"), "at_bound");
+  for (const auto* const place : {&json, &json.at("stick_slip")}) {
+    EXPECT_EQ(place->at("error_reduction_percent").at("value"), 12);
+    EXPECT_EQ(place->at("gain_percent"), place->at("error_reduction_percent"));
+  }
+  EXPECT_EQ(json.at("structure"), "two creep branches");
+  EXPECT_EQ(json.at("base"), json.at("structure"));
+  const auto& cause = json.at("causes").at(0);
+  EXPECT_EQ(cause.at("heldout_error_reduction_percent").at("value"), 40);
+  EXPECT_EQ(cause.at("heldout_error_reduction_percent").at("ci95").at(1), 50);
+  EXPECT_EQ(cause.at("heldout_gain_percent"), cause.at("heldout_error_reduction_percent"));
+  const auto& parameters = cause.at("parameters");
+  EXPECT_EQ(parameters.size(), 3U);
+  EXPECT_EQ(parameters.at("saturation_per_kpa").at("value"), 0.02);
+  EXPECT_EQ(parameters.at("levelling_per_kpa"), parameters.at("saturation_per_kpa"));
 }
 
 TEST(DiagnosisJson, IsWrittenIfThePathOfALogIsNotUtf8) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/stress_softening.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
@@ -53,6 +54,20 @@ TEST(BlockNumbers, IntervalsEndAtTheLowerParameterBound) {
   ASSERT_TRUE(numbers[0].has_interval);
   EXPECT_GT(numbers[0].ci95.upper, numbers[0].value);
   EXPECT_EQ(numbers[0].ci95.lower, 0);
+}
+
+TEST(BlockNumbers, HaveTheDeprecatedNameOfTheParameter) {
+  const model::Model truth = model::with_block(
+      loaded("bench_twin"), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.004}}));
+  const std::vector<Record> records = make_records({simulated(truth, SignalName::tp1, 5, 0.05, 5)}, {});
+  const FitPoint point{truth, rest_starts(truth, records)};
+  const FitSpace space = structure_space(records, truth, {});
+  const std::vector<CauseParameter> numbers =
+      block_numbers(uncertain_point(records, point, space), model::block_type<model::StressSoftening>());
+  ASSERT_EQ(numbers.size(), 2U);
+  EXPECT_EQ(numbers[0].formerly, "");
+  EXPECT_EQ(numbers[1].name, "saturation_per_kpa");
+  EXPECT_EQ(numbers[1].formerly, "levelling_per_kpa");
 }
 
 TEST(AlternativeTitle, MarksAnAlreadyNamedCauseAsFurther) {
