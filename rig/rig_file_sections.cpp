@@ -187,7 +187,7 @@ void read_socket(Context& context, MapReader& top) {
     finish_socket_file(context, reader, socket, true);
     socket.sequence_directory = resolved(context, socket.sequence_directory);
     read_map(
-        reader, "look", false, rig_keys().look, socket.look,
+        reader, std::string(reader.name_in_use("read_only", "look")), false, rig_keys().look, socket.look,
         [&](MapReader& look) {
           finish_socket_file(context, look, socket.look, false);
           if (!socket.look.path.empty() && socket.look.path == socket.path) {
@@ -196,7 +196,7 @@ void read_socket(Context& context, MapReader& top) {
                 "choose a different path, because each of the two sockets permits different commands");
           }
         },
-        "socket: look");
+        "socket: read_only");
   });
 }
 

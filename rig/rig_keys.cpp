@@ -287,7 +287,7 @@ void declare_service(RigKeys& keys) {
       optional("group", &SocketFile::group, {}, "group of the socket's file", "group of the daemon")};
   using Socket = SocketSettings;
   const Keys<Socket> own{
-      {"look", "map", "none", "a second, read-only socket with the keys `path`, `mode` and `group`"},
+      {"read_only", "map", "none", "a second, read-only socket with the keys `path`, `mode` and `group`"},
       required("sequence_directory", &Socket::sequence_directory, {},
                "folder of the sequences that clients can start by their names"),
       optional("max_clients", &Socket::max_clients, {1, 1000},

@@ -58,7 +58,7 @@ long faults_of_a_heap_block(std::size_t bytes) {
 RealTimeStep prepare_heap(std::size_t bytes) {
   RealTimeStep step{
       .name = "heap",
-      .outcome = Outcome::not_asked,
+      .outcome = Outcome::not_requested,
       .detail = "",
       .cost = "a memory allocation in a thread other than the control loop may cause page faults"};
   if (bytes == 0) return step;
@@ -111,7 +111,7 @@ bool may_lock_without_limit() {
 RealTimeStep lock_memory(bool wanted) {
   RealTimeStep step{
       .name = "memory lock",
-      .outcome = Outcome::not_asked,
+      .outcome = Outcome::not_requested,
       .detail = "",
       .cost =
           "the first use of a memory page, or its return from swap, can stop the control loop for "
@@ -140,7 +140,7 @@ RealTimeStep lock_memory(bool wanted) {
 
 RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descriptor) {
   RealTimeStep step{.name = "processor latency",
-                    .outcome = Outcome::not_asked,
+                    .outcome = Outcome::not_requested,
                     .detail = "",
                     .cost = "an idle processor may need 10 to 200 us to wake the control loop"};
   if (!latency_us) return step;
@@ -169,7 +169,7 @@ RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descr
 
 RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) {
   RealTimeStep step{.name = fmt::format("processors of {}", who),
-                    .outcome = Outcome::not_asked,
+                    .outcome = Outcome::not_requested,
                     .detail = "",
                     .cost =
                         "the kernel may move the thread between processors, which also run all other "
@@ -201,7 +201,7 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
   RealTimeStep step{.name = fmt::format("scheduling of {}", who),
-                    .outcome = Outcome::not_asked,
+                    .outcome = Outcome::not_requested,
                     .detail = "",
                     .cost = "other processes may delay the wake-up of the thread by several milliseconds"};
   // The timer slack matters for threads without SCHED_FIFO: by default, the kernel may delay each of their
@@ -261,7 +261,7 @@ std::size_t stack_left() {
 
 RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
   RealTimeStep step{.name = fmt::format("stack of {}", who),
-                    .outcome = Outcome::not_asked,
+                    .outcome = Outcome::not_requested,
                     .detail = "",
                     .cost = "the first deep function call of the thread causes page faults"};
   if (bytes == 0) return step;
@@ -283,10 +283,9 @@ RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
 }  // namespace
 
 std::string_view name_of(Outcome outcome) noexcept {
-  static constexpr auto names =
-      enum_names<Outcome>({{Outcome::verified, "verified"},
-                           {Outcome::failed, "failed"},
-                           {Outcome::not_asked, "not asked for"}});  // words-ok: a documented value
+  static constexpr auto names = enum_names<Outcome>({{Outcome::verified, "verified"},
+                                                     {Outcome::failed, "failed"},
+                                                     {Outcome::not_requested, "not_requested"}});
   return names[outcome];
 }
 
@@ -302,8 +301,9 @@ bool RealTimeReport::degraded() const noexcept {
 std::string RealTimeReport::format() const {
   std::string text;
   for (const RealTimeStep& step : steps_) {
-    text += fmt::format("{}: {}{}{}\n", step.name, name_of(step.outcome), step.detail.empty() ? "" : ", ",
-                        step.detail);
+    const bool requested = step.outcome != Outcome::not_requested;
+    text += fmt::format("{}: {}{}{}\n", step.name, requested ? name_of(step.outcome) : "not requested",
+                        step.detail.empty() ? "" : ", ", step.detail);
     if (step.outcome == Outcome::failed) text += fmt::format("  cost: {}\n", step.cost);
   }
   return text;
@@ -338,7 +338,7 @@ void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::st
 }
 
 RealTimeStep kernel_step() {
-  RealTimeStep step{.name = "kernel", .outcome = Outcome::not_asked, .detail = "", .cost = ""};
+  RealTimeStep step{.name = "kernel", .outcome = Outcome::not_requested, .detail = "", .cost = ""};
   utsname name{};
   uname(&name);
   // Some real-time kernels from 6.12 on have no /sys/kernel/realtime, but their version text contains

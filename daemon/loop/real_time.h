@@ -11,13 +11,14 @@ namespace softgrip::daemon {
 
 /// A requested real-time setting and its result.
 struct RealTimeStep {
-  enum class Outcome { verified, failed, not_asked };
+  enum class Outcome { verified, failed, not_requested };
   std::string name;
-  Outcome outcome = Outcome::not_asked;
+  Outcome outcome = Outcome::not_requested;
   std::string detail;  ///< value of the setting that was read back; after a failure, the reason of the
                        ///< failure and the usual remedy
   std::string cost;    ///< consequence for the daemon if the setting failed, in one sentence
 };
+/// Returns "verified", "failed" or "not_requested".
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
 
 /// The results of all real-time settings of one thread, or of the whole process.

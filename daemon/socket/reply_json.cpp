@@ -69,6 +69,7 @@ Json hello_json(const Greeting& greeting, const rig::SocketSettings& settings) {
           {"version", greeting.software_version},
           {"started_at", greeting.started_at},
           {"role", name_of(greeting.role)},
+          {"read_only", greeting.role == Role::look},
           {"client", greeting.client.empty() ? Json(nullptr) : Json(greeting.client)},
           {"commands", std::move(commands)},
           {"capabilities", std::move(capabilities)},

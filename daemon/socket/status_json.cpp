@@ -148,7 +148,12 @@ Json json_of(const RealTimeReport* report) {
   if (report == nullptr) return nullptr;
   Json steps = Json::array();
   for (const RealTimeStep& step : report->steps()) {
-    Json json{{"name", step.name}, {"outcome", name_of(step.outcome)}, {"detail", step.detail}};
+    const bool requested = step.outcome != RealTimeStep::Outcome::not_requested;
+    Json json{{"name", step.name},
+              {"result", name_of(step.outcome)},
+              // The key `outcome` is deprecated.
+              {"outcome", requested ? name_of(step.outcome) : "not asked for"},  // words-ok: documented value
+              {"detail", step.detail}};
     if (step.outcome == RealTimeStep::Outcome::failed) json["cost"] = step.cost;
     steps.push_back(std::move(json));
   }

@@ -59,6 +59,11 @@ class Hello(_AsSaid):
     commands: tuple[str, ...]
     capabilities: tuple[str, ...]
 
+    @property
+    def read_only(self) -> bool:
+        """Returns True if the client may read the state of the rig, but may not move the rig."""
+        return self.role == "look"
+
 
 @dataclasses.dataclass(frozen=True)
 class Fault(_AsSaid):

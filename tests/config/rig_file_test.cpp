@@ -77,26 +77,40 @@ TEST(RigFile, TheBenchRigHasTheValuesOfTheFile) {
   EXPECT_EQ(rig.seed, std::nullopt);
 }
 
-TEST(RigFile, ADeprecatedKeyIsReadButRefusedBesideTheNewKey) {
+/// Reads rig.yaml with the text `from` replaced by `to`.
+std::optional<rig::RigFile> read_replaced(const std::string& from, const std::string& to,
+                                          Problems& problems) {
   std::ostringstream shipped_text;
   shipped_text << std::ifstream(shipped("rig.yaml")).rdbuf();
-  const std::string line = "  overrun_cycles: 0 ";
-  const auto read = [&](const std::string& lines, Problems& problems) {
-    std::string text = shipped_text.str();
-    text.replace(text.find(line), line.size(), lines + " ");
-    return rig::read_rig(document::parse(shipped("rig.yaml"), text, problems), problems);
-  };
+  std::string text = shipped_text.str();
+  text.replace(text.find(from), from.size(), to);
+  return rig::read_rig(document::parse(shipped("rig.yaml"), text, problems), problems);
+}
+
+TEST(RigFile, ADeprecatedKeyIsReadButRefusedBesideTheNewKey) {
+  const std::string cycles = "  overrun_cycles: 0", folder = "sequence_directory: sequences";
+  const std::string socket = ": {path: /tmp/second.sock, mode: \"0660\"}";
   for (const char* key : {"overrun_cycles", "slipped_cycles"}) {
     Problems problems;
-    const auto rig = read(std::string("  ") + key + ": 7", problems);
+    const auto rig = read_replaced(cycles, std::string("  ") + key + ": 7", problems);
     ASSERT_TRUE(rig) << problems.format();
     EXPECT_EQ(rig->settings.faults.overrun_cycles, 7U) << key;
   }
-  Problems problems;
-  EXPECT_FALSE(read("  slipped_cycles: 7\n  overrun_cycles: 7", problems));
-  EXPECT_NE(problems.format().find("`slipped_cycles` is the deprecated name of `overrun_cycles`"),
+  for (const char* key : {"read_only", "look"}) {
+    Problems problems;
+    const auto rig = read_replaced(folder, folder + ", " + key + socket, problems);
+    ASSERT_TRUE(rig) << problems.format();
+    EXPECT_EQ(rig->socket.look.path, "/tmp/second.sock") << key;
+  }
+  Problems two_counts;
+  EXPECT_FALSE(read_replaced(cycles, "  slipped_cycles: 7\n  overrun_cycles: 7", two_counts));
+  EXPECT_NE(two_counts.format().find("`slipped_cycles` is the deprecated name of `overrun_cycles`"),
             std::string::npos)
-      << problems.format();
+      << two_counts.format();
+  Problems two_sockets;
+  EXPECT_FALSE(read_replaced(folder, folder + ", look" + socket + ", read_only" + socket, two_sockets));
+  EXPECT_NE(two_sockets.format().find("`look` is the deprecated name of `read_only`"), std::string::npos)
+      << two_sockets.format();
 }
 
 TEST(RigFile, TheSimulatedRigHasThePlantsOfTheFile) {

@@ -42,6 +42,15 @@ ERRORS = ({"code": "refused", "message": "m", "refusal": {"code": "R02", "name":
 OTHERS = (None, True, False, 0, -1, 1.5, 10**400, "", "x", "\ud800", [], [1], {}, {"a": None}, [[[]]])
 
 
+class DeprecatedNames(unittest.TestCase):
+    def test_a_new_name_has_the_value_of_the_deprecated_name(self):
+        channel = Status.of({**STATUS, "channels": [{**CHANNEL, "deficit_mm": 1.5}]}, "status").channels[0]
+        self.assertEqual((channel.shortfall_mm, channel.deficit_mm), (1.5, 1.5))
+        hello = RESULTS["hello"][0]
+        for role, read_only in (("look", True), ("operate", False)):
+            self.assertIs(softgrip.Hello.of({**hello, "role": role}, "hello").read_only, read_only)
+
+
 def places(value, path=()):
     """Yields the path of `value` and the paths of all values inside `value`. The test replaces the value at each
     path."""

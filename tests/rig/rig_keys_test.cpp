@@ -59,7 +59,7 @@ const std::map<std::string, Names> other_keys{
     {"object", {"position_mm", "yielding"}},
     {"pressure_monitor", {"is_kpa"}},
     {"safe_action", {"idle", "closing", "holding", "releasing"}},
-    {"look", {"path", "mode"}},
+    {"read_only", {"path", "mode"}},
 };
 
 std::set<std::string> permitted_in(const std::string& map) {

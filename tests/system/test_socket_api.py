@@ -57,7 +57,7 @@ class SocketApi(bench.BenchTest):
         self.look = self.folder / "look.sock"
         self.rig_path = self.rig(self.board.port, changes=(
             ("sequence_directory: sequences",
-             f'sequence_directory: sequences, look: {{path: {self.look}, mode: "0666"}}'),))
+             f'sequence_directory: sequences, read_only: {{path: {self.look}, mode: "0666"}}'),))
         self.softgripd = self.daemon(self.rig_path)
         self.softgripd.wait_for_state("idle")
 
@@ -74,10 +74,10 @@ class SocketApi(bench.BenchTest):
 
     def test_hello_states_the_role_and_the_permitted_commands(self):
         operator = self.client().ask("hello", client="cell 4", api=1)["result"]
-        self.assertEqual((operator["role"], operator["client"]), ("operate", "cell 4"))
+        self.assertEqual((operator["role"], operator["read_only"], operator["client"]), ("operate", False, "cell 4"))
         self.assertIn("start", operator["commands"])
         viewer = self.client(path=self.look).ask("hello")["result"]
-        self.assertEqual((viewer["role"], viewer["client"]), ("look", None))
+        self.assertEqual((viewer["role"], viewer["read_only"], viewer["client"]), ("look", True, None))
         self.assertEqual(set(operator["commands"]) - set(viewer["commands"]),
                          {"start", "stop", "vent", "release", "acknowledge"})
         self.assertEqual(self.code(self.client().ask("hello", api=2)), "wrong_api")
@@ -207,6 +207,11 @@ class SocketApi(bench.BenchTest):
         for kind in ("woken_late", "took_long"):
             self.assertEqual(statistics["loop"][f"slips_{kind}"], statistics["loop"][f"overruns_{kind}"])
         self.assertEqual(statistics["bus"]["slips"], statistics["bus"]["overruns"])
+        steps = status["real_time"]["steps"]
+        self.assertTrue(steps)
+        for step in steps:
+            self.assertEqual(step["outcome"], "not asked for" if step["result"] == "not_requested" else step["result"])
+        self.assertIn("not_requested", {step["result"] for step in steps})
 
 
 class Thermometer(bench.BenchTest):

@@ -47,7 +47,7 @@ void take(const RealTimeStep& step, bool required, Findings& findings) {
   switch (step.outcome) {
     case RealTimeStep::Outcome::verified:
       return findings.ok(step.name, step.detail);
-    case RealTimeStep::Outcome::not_asked:
+    case RealTimeStep::Outcome::not_requested:
       return findings.ok(step.name, "not requested in the rig file");
     case RealTimeStep::Outcome::failed:
       break;

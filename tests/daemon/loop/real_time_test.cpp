@@ -64,7 +64,8 @@ TEST(RealTime, SettingsNotRequestedAreNeverReportedAsFailed) {
   const ProcessorLatencyRequest latency = prepare_process(settings, report);
   report.append(prepared(settings, 0, [] {}));
   EXPECT_FALSE(report.degraded());
-  for (const RealTimeStep& step : report.steps()) EXPECT_EQ(step.outcome, Outcome::not_asked) << step.name;
+  for (const RealTimeStep& step : report.steps())
+    EXPECT_EQ(step.outcome, Outcome::not_requested) << step.name;
 }
 
 TEST(RealTime, AMissingProcessorIsAFailureWithTheCost) {

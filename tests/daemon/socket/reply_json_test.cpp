@@ -13,10 +13,13 @@ TEST(ReplyJson, AGreetingListsTheCommandsOfTheRole) {
   const rig::SocketSettings settings;
   const auto viewer = hello_json({"1.2", "2026-11-21T09:00:00.000Z", Role::look, "", 1}, settings);
   EXPECT_EQ(viewer["role"], "look");
+  EXPECT_EQ(viewer["read_only"], true);
   EXPECT_TRUE(viewer["client"].is_null());
   EXPECT_EQ(viewer["bounds"]["max_clients"], settings.max_clients);
   const auto operating = hello_json({"1.2", "2026-11-21T09:00:00.000Z", Role::operate, "cell", 1}, settings);
   EXPECT_EQ(operating["client"], "cell");
+  EXPECT_EQ(operating["role"], "operate");
+  EXPECT_EQ(operating["read_only"], false);
   const auto may = [](const auto& greeting, const char* command) {
     const auto& commands = greeting["commands"];
     return std::find(commands.begin(), commands.end(), command) != commands.end();

@@ -458,6 +458,17 @@ TEST(ExamineDaemon, AnUnfitModelFailsOnlyAfterASequenceHasRun) {
             Verdict::fail);
 }
 
+TEST(ExamineDaemon, ASettingThatTheRigFileDoesNotRequestIsNamed) {
+  auto status = healthy_status();
+  auto& step = status["real_time"]["steps"][0];
+  step = {{"name", "processors"}, {"detail", ""}};
+  step["outcome"] = "not asked for";  // words-ok: documented value
+  Findings findings;
+  examine_daemon(status, healthy_statistics(), "bench", findings);
+  const std::string text = text_of({"bench", "rig.yaml", true}, findings, 200, false);
+  EXPECT_NE(text.find("not requested in the rig file"), std::string::npos) << text;
+}
+
 TEST(ExamineDaemon, AnEmptyReplyIsAFailure) {
   Findings findings;
   examine_daemon({}, {}, "bench", findings);
