@@ -858,7 +858,10 @@ def outcome(file, folder):
     if done.returncode != 0:
         return f"exit code {done.returncode}: {said}", "refused", ""
     told = json.loads(done.stdout)["logs"][0]
-    remarks = "; ".join(told["warnings"] + told["notes"] + ["warning: " + warning for warning in told["doubts"]])
+    remarks = "; ".join(told["warnings"] + told["notes"] +
+                        ["warning: " + warning for warning in told["plausibility_warnings"]])
+    if told["doubts"] != told["plausibility_warnings"]:
+        return "the deprecated key doubts differs from plausibility_warnings", "values", remarks
     rows = told["rows"]
     if rows["file"] != rows["used"] + rows["joined"] + sum(rows["left_out"].values()) or rows["used"] != told["samples"]:
         return f"{rows} does not account for every row", "values", remarks

@@ -46,7 +46,7 @@ def outcome(program, path, options):
         problems = [line for line in done.stderr.splitlines() if line.startswith(f"{path}:")]
         return done.returncode, (problems or done.stderr.splitlines() or [""])[-1].replace(f"{path}:", "")[:160]
     log = json.loads(done.stdout)["logs"][0]
-    said = log.get("warnings", []) + log["notes"] + log["doubts"]
+    said = log.get("warnings", []) + log["notes"] + log["plausibility_warnings"]
     return 0, f"{log['samples']} samples, {log['duration_s']:.6g} s" + "".join("; " + text[:120] for text in said[:2])
 
 

@@ -173,6 +173,24 @@ TEST(FingerHealth, IndicatorWithoutRecordingIsNullInJson) {
   EXPECT_TRUE(json["numbers"]["gain_mm"]["value"].is_number());
 }
 
+TEST(FingerHealth, DeprecatedKeysHaveTheValuesOfTheirReplacements) {
+  FingerHealth health = judged(changed({{HealthNumber::gain, -2}}));
+  health.notes = {{health.points.size(), {"2026-11-03", "left", "finger replaced"}}};
+  const auto json = result::json_of(fields_of(health, suspicion_of(health)));
+  EXPECT_EQ(json["notes"][0]["action"], "finger replaced");
+  EXPECT_EQ(json["notes"][0]["mended"], json["notes"][0]["action"]);
+  ASSERT_FALSE(json["alarms"].empty());
+  EXPECT_EQ(json["alarms"][0]["active"], true);
+  EXPECT_EQ(json["alarms"][0]["stands"], true);
+  for (const bool active : {true, false}) {
+    SharedChange shared;
+    shared.stands = active;
+    const auto change = result::json_of(fields_of(shared));
+    EXPECT_EQ(change["active"], active);
+    EXPECT_EQ(change["stands"], active);
+  }
+}
+
 TEST(FingerHealth, SharedChangesNeedTheSameSignInAllFingers) {
   const FingerHealth healthy = judged({});
   const FingerHealth less = judged(changed({{HealthNumber::gain, -2}, {HealthNumber::zero, 1}}));
