@@ -168,6 +168,20 @@ TEST(Comparison, NamesEveryNumberOfAJsonThatDiffers) {
   EXPECT_EQ(other.differences[3].recomputed, "0.2001");
 }
 
+TEST(Comparison, ANewNameOfAReportedKeyIsNoDifference) {
+  const Json was{{"gain_percent", {{"value", 3.0}}}};
+  const Json same{{"error_reduction_percent", {{"value", 3.0}}}, {"gain_percent", {{"value", 3.0}}}};
+  const Json changed{{"error_reduction_percent", {{"value", 4.0}}}, {"gain_percent", {{"value", 4.0}}}};
+  const Json unequal{{"error_reduction_percent", {{"value", 4.0}}}, {"gain_percent", {{"value", 3.0}}}};
+  Comparison none{1e-6, 0, {}}, value{1e-6, 0, {}}, key{1e-6, 0, {}};
+  compare_json("f.json", was, same, none);
+  compare_json("f.json", was, changed, value);
+  compare_json("f.json", was, unequal, key);
+  EXPECT_TRUE(places(none).empty());
+  EXPECT_EQ(places(value), std::vector<std::string>{"f.json: gain_percent.value"});
+  EXPECT_EQ(places(key), std::vector<std::string>{"f.json: error_reduction_percent"});
+}
+
 TEST(Comparison, ToleranceIsRelativeAndRunTimesPathsAndVersionsAreIgnored) {
   const Json was{
       {"value", 1000.0}, {"wall_s", 3}, {"software", "a"}, {"logs", {{{"path", "x"}, {"samples", 9}}}}};
