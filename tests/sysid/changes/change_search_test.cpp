@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "model/blocks/bouc_wen.h"
+#include "model/named.h"
 #include "sysid/changes/change_size.h"
 #include "tests/sysid/changes/pressure_base.h"
 
@@ -70,6 +72,21 @@ TEST_F(ChangeSearch, TiedEffectWithFewestParametersRanksFirst) {
   put_fewest_numbers_first(ranked, ties_in(later, 1));
   EXPECT_LT(ranked[0].gain - ranked[0].usual, ranked[1].gain - ranked[1].usual);
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "transport_delay");
+}
+
+TEST(Effects, ParametersHaveTheDeprecatedNameOfTheBlockParameter) {
+  Base base;
+  base.model = model::with_block({}, model::default_block(model::block_type<model::BoucWen>()));
+  base.drive = Drive::command;
+  std::size_t renamed = 0;
+  for (const Effect& effect : effects_for(base, make_records(test::logs_of({}, 1), {}), {}, false)) {
+    for (const EffectNumber& number : effect.numbers) {
+      if (number.name != "saturation_per_kpa" && number.name != "saturation") continue;
+      EXPECT_EQ(number.formerly, number.name == "saturation" ? "levelling" : "levelling_per_kpa");
+      ++renamed;
+    }
+  }
+  EXPECT_GT(renamed, 0U);
 }
 
 /// Returns an effect with the given error reduction and the given numbers of parameters.
