@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/text.h"
 #include "model/file/model_file.h"
 #include "rig/rig_file_reader.h"
 
@@ -57,9 +58,12 @@ struct BoardKind {
   void (*read)(Context& context, const document::Node& node);
   bool after_channels;  ///< true: the board is read after the channels; false: before the channels
 };
-constexpr std::array<BoardKind, 4> board_kinds{
-    BoardKind{"simulated", read_simulated_board, true}, BoardKind{"modbus_tcp", read_modbus_tcp, false},
-    BoardKind{"modbus_rtu", read_modbus_rtu, false}, BoardKind{"iio", read_iio, false}};
+constexpr std::array board_kinds{
+    BoardKind{"simulated", read_simulated_board, true},
+    BoardKind{"modbus_tcp", read_modbus_tcp, false},
+    BoardKind{"modbus_rtu", read_modbus_rtu, false},
+    BoardKind{"iio", read_iio, false},
+};
 
 void read_board_and_channels(Context& context, MapReader& top) {
   const document::Node* const board = top.child("board", true);
@@ -77,7 +81,10 @@ void read_board_and_channels(Context& context, MapReader& top) {
     }
     const bool is_map = board->kind == document::Node::Kind::map;
     if (is_map && found != 1 && reader.keys().size() != 1) {
-      top.report("board", "board must hold one of `simulated`, `modbus_tcp`, `modbus_rtu` and `iio`");
+      top.report("board",
+                 "board must hold one of " + enumerated(board_kinds, " and ", [](const BoardKind& one) {
+                   return document::in_backticks(one.key);
+                 }));
     }
   }
   if (kind != nullptr) context.board_key = kind->key;

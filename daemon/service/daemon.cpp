@@ -74,16 +74,26 @@ Provenance provenance_of(const rig::RigFile& rig, const DaemonOptions& options) 
   return provenance;
 }
 
+/// Creates the driver of a board. This file compiles only if each alternative of RigFile::board has a
+/// function.
+struct BoardMaker {
+  std::unique_ptr<drivers::Board> operator()(const simulation::SimulatedBoardSettings& settings) const {
+    return std::make_unique<simulation::SimulatedBoard>(settings, clock);
+  }
+  std::unique_ptr<drivers::Board> operator()(const drivers::ModbusSettings& settings) const {
+    return std::make_unique<drivers::ModbusBoard>(settings);
+  }
+  std::unique_ptr<drivers::Board> operator()(const drivers::IioSettings& settings) const {
+    return std::make_unique<drivers::IioBoard>(settings);
+  }
+
+  const Clock& clock;
+};
+
 }  // namespace
 
 std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock) {
-  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&rig.board)) {
-    return std::make_unique<simulation::SimulatedBoard>(*simulated, clock);
-  }
-  if (const auto* converters = std::get_if<drivers::IioSettings>(&rig.board)) {
-    return std::make_unique<drivers::IioBoard>(*converters);
-  }
-  return std::make_unique<drivers::ModbusBoard>(std::get<drivers::ModbusSettings>(rig.board));
+  return std::visit(BoardMaker{clock}, rig.board);
 }
 
 DaemonParts::DaemonParts(rig::RigFile rig_file, DaemonOptions run_options)
