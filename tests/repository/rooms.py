@@ -2,7 +2,8 @@
 docs/explanation/architecture.md.
 
     rooms.py            fails if a folder with code belongs to no room, if a room names another room after USES
-                        whose headers it does not include, or if the table of the page differs from rooms.cmake
+                        whose headers it does not include, if a room uses a room of its own or a higher layer of the
+                        page, or if the table of the page differs from rooms.cmake
     rooms.py --write    updates the first and the last column of the page; the content of a room is written by hand
 """
 
@@ -13,7 +14,6 @@ import sys
 source = pathlib.Path(__file__).resolve().parents[2]
 page = source / "docs/explanation/architecture.md"
 begin, end = "<!-- rooms: kept up to date by tests/repository/rooms.py --write -->\n", "<!-- /rooms -->\n"
-product = "base document model control drivers simulation rig daemon sysid tools gateways library".split()
 
 
 def rooms():
@@ -42,6 +42,25 @@ def included_by(folders):
     return folders_included
 
 
+def layers(text):
+    """Returns {top-level folder: height of its layer} for the text of the page."""
+    lines = re.search(r"^```layers\n(.*?)^```$", text, re.M | re.S)[1].splitlines()
+    return {folder: height for height, line in enumerate(reversed(lines))
+            for folder in re.split(r"  +", line)[0].split(", ")}
+
+
+def upward(heights):
+    """Returns a message for each use of a room that is not in a lower layer, and for each folder without a layer."""
+    for folder, _, uses in rooms():
+        top = folder.split("/")[0]
+        if top not in heights:
+            yield f"docs/explanation/architecture.md: no layer contains {top}"
+            continue
+        for other in {one.split("/")[0] for one in uses} - {top}:
+            if heights.get(other, 0) >= heights[top]:
+                yield f"docs/explanation/architecture.md: the layer of {top} is not above the layer of {other}"
+
+
 def table(known):
     """Returns the table of rooms for docs/explanation/architecture.md. `known` maps the folder of each room to the
     text that describes its content."""
@@ -56,10 +75,12 @@ def main():
     for folder, others, _ in rooms():
         for one in [folder, *others]:
             home[one] = folder
-    for top in product:
+    heights = layers(page.read_text())
+    wrong += upward(heights)
+    for top in heights:
         for path in sorted({file.parent for file in (source / top).rglob("*.h")}):
             name = str(path.relative_to(source))
-            if name not in home and name != "tools/programs":
+            if name not in home and name not in ("bench", "tools/programs"):
                 wrong.append(f"{name} is no room of cmake/rooms.cmake")
     for folder, others, uses in rooms():
         needed = {home.get(one, one) for one in included_by([folder, *others])}
