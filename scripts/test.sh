@@ -6,9 +6,8 @@
 #   scripts/test.sh            all of this
 #   scripts/test.sh --quick    the release build and the tests that take at most a moment each
 #   scripts/test.sh --all      hours: also the tests with the labels campaign (more simulated worlds, the binary interface of
-#                              the library, an exported model in Octave) and recipe (carries out the pages that explain
-#                              how to add a part, in a copy of the sources), every test with the sanitizers, and every
-#                              source with clang-tidy
+#                              the library, an exported model in Octave) and recipe (executes the pages that explain how
+#                              to add a part), every test with the sanitizers, and every source with clang-tidy
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 

@@ -1,40 +1,50 @@
 #!/usr/bin/python3
-"""Checks that the edits of the how-to pages fit the sources. The check makes the edits in a copy of the sources but
-does not build the copy. `ctest -L recipe` makes the edits and builds the copy."""
+"""Checks that the edits of the how-to pages fit the sources, and that the new files and the edited headers compile. Does
+not build the edited sources: `ctest -L recipe` does."""
 
+import concurrent.futures
+import os
 import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "recipe")]
 
-import add_a_cause  # noqa: E402
 import recipe  # noqa: E402
 
 
-def edits_of_the_cause(folder):
-    """Makes all edits of docs/how-to/add-a-cause.md. Returns the number of edits. If an edit does not fit the sources,
-    raises an AssertionError that describes the edit."""
-    add_a_cause.copy_of(ROOT, folder)
-    made = 0
-    for language, info, body in add_a_cause.FENCE.findall((ROOT / add_a_cause.PAGE).read_text()):
-        if language == "diff":
-            add_a_cause.insert(folder / info.removeprefix("file="), body)
-            made += 1
-    return made
+def compiled(tree, name):
+    """Returns the error messages of the compiler for an edited file; empty if the file compiles or if no compiler is
+    installed."""
+    compiler = next(filter(None, map(shutil.which, ("c++", "g++", "clang++"))), None)
+    if compiler is None:
+        return ""
+    done = subprocess.run([compiler, "-std=c++20", "-Wall", "-Wextra", "-fsyntax-only", "-I", tree.edited, "-I", ROOT,
+                           "-include", tree.edited / name, "-x", "c++", "/dev/null"],
+                          capture_output=True, text=True, check=False)
+    return done.stderr
 
 
 def main():
-    with tempfile.TemporaryDirectory(prefix="softgrip-recipes-") as folder:
-        try:
-            of_command = recipe.Tree(folder).carry_out("docs/how-to/add-a-command.md")
-            of_cause = edits_of_the_cause(pathlib.Path(folder) / "cause")
-        except AssertionError as error:
-            print(error, file=sys.stderr)
-            return 1
-    print(f"{of_command} edits of a command and {of_cause} of a cause fit")
-    return 0 if of_command and of_cause else 1
+    with tempfile.TemporaryDirectory(prefix="softgrip-recipes-") as folder, \
+            concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
+        checks, edits = {}, 0
+        for page in recipe.PAGES:
+            tree = recipe.Tree(pathlib.Path(folder) / pathlib.Path(page).stem)
+            try:
+                names = tree.edit(page)
+            except recipe.RecipeError as error:
+                sys.exit(f"{page}: {error}")
+            edits += len(names)
+            for name in dict.fromkeys(names):
+                if name.endswith(".h") or (name.endswith(".cpp") and not (ROOT / name).exists()):
+                    checks[f"{page}: {name}"] = threads.submit(compiled, tree, name)
+        wrong = [f"{name}\n{check.result()}" for name, check in checks.items() if check.result()]
+    print("\n".join(wrong) or f"{edits} edits fit, and {len(checks)} edited files compile")
+    return 1 if wrong or not edits or not checks else 0
 
 
 if __name__ == "__main__":
