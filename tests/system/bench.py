@@ -167,6 +167,7 @@ class Daemon(Process):
         super().__init__(name, [SOFTGRIPD, "--config", rig], folder, environment)
         wait_for("the daemon's socket", self._listening)
         self.lines = Lines(self.socket_path)
+        self.checked = {}  # {command: last reply that has been checked}
 
     def _listening(self):
         if not self.running():
@@ -177,8 +178,12 @@ class Daemon(Process):
         return False
 
     def ask(self, command, **arguments):
-        reply = json.loads(self.lines.ask(json.dumps({"command": command, **arguments})))
-        api_schema.check(reply, command)
+        text = self.lines.ask(json.dumps({"command": command, **arguments}))
+        reply = json.loads(text)
+        # A test that waits receives many equal replies, and a check takes longer than the exchange.
+        if self.checked.get(command) != text:
+            api_schema.check(reply, command)
+            self.checked[command] = text
         return reply
 
     def result(self, command, **arguments):
