@@ -108,11 +108,24 @@ class Runner:
     def words(line, out):
         return [str(bench.SOFTGRIP), *line.format(out=out).split()]
 
-    def run(self, line, out="out", expect_s=bench.PATIENCE_S * 8, **keys):  # baseline --rig takes 2 minutes
+    def start(self, line, out="out", **keys):
+        """Starts a command. Returns its process."""
         keys.setdefault("stdout", subprocess.PIPE)
         keys["env"] = {**self.environment, **keys.get("env", {})}
-        return subprocess.run(self.words(line, out), stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, cwd=self.folder,
-                              timeout=expect_s, **keys)
+        return subprocess.Popen(self.words(line, out), stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, cwd=self.folder, **keys)
+
+    @staticmethod
+    def end(child, expect_s=bench.PATIENCE_S * 8):  # baseline --rig takes 2 minutes
+        """Waits for the end of a process. Returns the finished process."""
+        with child:
+            try:
+                output, errors = child.communicate(timeout=expect_s)
+            finally:
+                child.kill()
+        return subprocess.CompletedProcess(child.args, child.returncode, output, errors)
+
+    def run(self, line, out="out", **keys):
+        return self.end(self.start(line, out, **keys))
 
     def created(self, line, out="out"):
         """Runs a command. Returns the finished process and the paths of the files that it has created."""

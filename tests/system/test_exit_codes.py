@@ -73,8 +73,11 @@ MOTION = {
     "baseline --rig": Command(f"baseline --rig {{rig}} --rig-channel left --model {TWIN} --experiments minor_loops --rest-s 0 --yes "
                               "--out {out}/base", "baseline --rig bad.yaml --rig-channel left --yes --out {out}/base", writes="base"),
 }
+# The experiments of this command take 2 minutes.
+LONG = "baseline --rig"
 SHORT = ("name: short\nsteps:\n  - move: {displacement_mm: 5, speed_mm_per_s: 10, settle_s: 0.5}\n"
          "  - release: {duration_s: 0.2, purge_s: 0.2, timeout_s: 5, on_fail: vent}\n")
+NO_SPACE = "No space left on device|File too large"
 NEEDS_SHIM = unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
 
 
@@ -183,7 +186,7 @@ class Desk(bench.BenchTest):
                 for line in (command.done, *command.more):
                     done = self.runner.run(line, "full", preexec_fn=disk.limit)
                     self.ended(done, cell)
-                    self.assertRegex(done.stderr.decode(), "No space left on device|File too large", line)
+                    self.assertRegex(done.stderr.decode(), NO_SPACE, line)
                 self.assertEqual(path.read_text() if path.exists() else "", "" if command.new else "old\n", name)
             else:
                 with open(path, "ab") as output:
@@ -334,18 +337,18 @@ class Motion(bench.BenchTest):
         self.runner = Runner(self.folder)
         self.count = 0
 
-    def use_rested_fingers(self):
+    def use_rested_fingers(self, name="softgrip-rig"):
         """Starts a new rig whose fingers have never been under pressure. After a pressure, a finger would creep for a
         minute, and this creep would disturb the comparison of the finger with the model."""
-        self.board = self.emulator("--faults", self.faults)
-        self.rig_path = self.rig(self.board.port)
+        self.board = self.emulator("--faults", self.faults, name=name)
+        self.rig_path = self.rig(self.board.port).rename(self.folder / "config" / f"{name}.yaml")
 
-    def each(self, ending, check):
-        exit_codes.each(self, MOTION, ending, check)
+    def each(self, ending, check, without=None):
+        exit_codes.each(self, {name: command for name, command in MOTION.items() if name != without}, ending, check)
 
-    def line(self, command, out="out"):
+    def line(self, command, out="out", rig="softgrip-rig"):
         """Returns the words of the command line, with the rig file and the folders of this test."""
-        self.use_rested_fingers()
+        self.use_rested_fingers(rig)
         self.count += 1
         (self.folder / out / str(self.count)).mkdir()
         return command.done.format(rig=self.rig_path, out=f"{out}/{self.count}")
@@ -414,11 +417,15 @@ class Motion(bench.BenchTest):
             if command.writes:
                 self.assertTrue((self.folder / "out" / str(self.count) / command.writes).exists())
 
-        self.each("done", check)
+        self.each("done", check, without=LONG)
 
-    def test_a_full_disk_ends_a_motion_with_the_listed_code(self):
+    def full_disk(self):
         disk = FullDisk(self.folder / "full")
         self.addCleanup(disk.close)
+        return disk
+
+    def test_a_full_disk_ends_a_motion_with_the_listed_code(self):
+        disk = self.full_disk()
         lines = {name: self.line(command, "full") for name, command in MOTION.items()}
         (disk.folder / "output").touch()
         disk.fill()
@@ -427,7 +434,7 @@ class Motion(bench.BenchTest):
             self.use_rested_fingers()
             if command.writes:
                 done = self.runner.run(lines[name], preexec_fn=disk.limit)
-                self.assertRegex(done.stderr.decode(), "No space left on device|File too large")
+                self.assertRegex(done.stderr.decode(), NO_SPACE)
             else:
                 with open(disk.folder / "output", "ab") as output:
                     done = self.runner.run(lines[name], stdout=output, preexec_fn=disk.limit)
@@ -435,17 +442,39 @@ class Motion(bench.BenchTest):
             self.ended(done, cell)
             self.check_safe(name)
 
-        self.each("full disk", check)
+        self.each("full disk", check, without=LONG)
 
     def test_a_closed_pipe_ends_a_motion_with_the_listed_code(self):
         def check(name, command, cell):
-            # The experiments of baseline --rig take 2 minutes, so the test runs this command only once.
-            for ignored in (False, True) if name != "baseline --rig" else (False,):
+            for ignored in (False, True):
                 done = self.runner.unread(self.line(command), ignored)
                 self.ended(done, "4" if ignored else cell, signal.SIGPIPE)
                 self.check_safe(name)
 
-        self.each("closed pipe", check)
+        self.each("closed pipe", check, without=LONG)
+
+    def test_the_long_motion_has_the_listed_codes_and_safe_outputs(self):
+        """Causes three endings of the command LONG at the same time, on three rigs."""
+        disk = self.full_disk()
+        reader, writer = os.pipe()
+        os.close(reader)
+        self.addCleanup(os.close, writer)
+        keys = {"done": {}, "full disk": {"preexec_fn": disk.limit}, "closed pipe": {"stdout": writer}}
+        lines, boards = {}, {}
+        for ending in keys:
+            lines[ending] = self.line(MOTION[LONG], "full" if ending == "full disk" else "out", rig=ending.replace(" ", "-"))
+            boards[ending] = self.board
+        disk.fill()
+        children = {ending: self.runner.start(lines[ending], **keys[ending]) for ending in keys}
+        for ending, child in children.items():
+            with self.subTest(ending):
+                done = self.runner.end(child)
+                self.ended(done, self.table[LONG][ending], signal.SIGPIPE)
+                self.assertLess(max(boards[ending].commands_kpa()), 0.1)
+                if ending == "full disk":
+                    self.assertRegex(done.stderr.decode(), NO_SPACE)
+                elif ending == "done":
+                    self.assertTrue((self.folder / "out" / "1" / MOTION[LONG].writes).exists())
 
 
 if __name__ == "__main__":
