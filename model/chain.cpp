@@ -1,5 +1,6 @@
 #include "model/chain.h"
 
+#include "model/chain_walk.h"
 #include "model/dual.h"
 
 namespace softgrip::model {

@@ -42,6 +42,13 @@ class Chain {
   /// @param seed  seed of the random numbers of the sensor blocks. Equal seeds give equal noise.
   explicit Chain(const Model& model, std::span<const T> values = {}, double sample_time_s = 0,
                  std::uint64_t seed = 0);
+  // chain_walk.h defines these functions. If the compiler generated them, each file that contains a chain
+  // would compile them for all types of blocks.
+  Chain(const Chain& other);
+  Chain(Chain&& other) noexcept;
+  Chain& operator=(const Chain& other);
+  Chain& operator=(Chain&& other) noexcept;
+  ~Chain();
 
   /// Sets the state of rest after the command rose from 0 to `command` once and was then held for a long time
   /// (see block.h).
@@ -124,5 +131,3 @@ class Chain {
 extern template class Chain<double>;
 
 }  // namespace softgrip::model
-
-#include "model/chain_walk.h"  // IWYU pragma: keep

@@ -1,5 +1,6 @@
 #pragma once
-// Implements the steps of a Chain. Only chain.h includes this file.
+// Implements the functions of a Chain. Only files that instantiate Chain for a number type, or that construct
+// a single block, include this file. chain.cpp instantiates Chain<double>.
 
 #include <type_traits>
 #include <utility>
@@ -86,6 +87,17 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
   }
   reset(T(0.0));
 }
+
+template <class T>
+Chain<T>::Chain(const Chain& other) = default;
+template <class T>
+Chain<T>::Chain(Chain&& other) noexcept = default;
+template <class T>
+Chain<T>& Chain<T>::operator=(const Chain& other) = default;
+template <class T>
+Chain<T>& Chain<T>::operator=(Chain&& other) noexcept = default;
+template <class T>
+Chain<T>::~Chain() = default;
 
 template <class T>
 void Chain<T>::reset(const T& command) {

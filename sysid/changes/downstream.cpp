@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "model/catalogue.h"
-#include "model/chain.h"
+#include "model/chain_walk.h"
 #include "model/visit.h"
 #include "sysid/fitting/trajectory_walk.h"
 

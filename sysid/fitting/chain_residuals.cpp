@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "model/blocks/kelvin_voigt.h"
+#include "model/chain_walk.h"
 #include "model/named.h"
 #include "sysid/fitting/gradient.h"
 #include "sysid/fitting/residuals.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/chain.h"
+#include "model/chain_walk.h"
 #include "model/dual.h"
 #include "model/named.h"
 #include "model/signals.h"
