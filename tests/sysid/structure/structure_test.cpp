@@ -201,6 +201,10 @@ TEST(WithoutWandering, RemovesZeroDriftAndKeepsTheFingerResponse) {
   EXPECT_LT(rms(missed), 0.1 * drift_mm);
 }
 
+/// Sampling rate of the logs from which the tests identify play_finger() and its variants [Hz]. At a higher
+/// rate, the tests take longer and check the same properties.
+constexpr double rate_hz = 50;
+
 TEST(IdentifyStructure, FindsBoucWenWithDelayAndLag) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs;
@@ -249,8 +253,8 @@ TEST(IdentifyStructure, DenseLogIsAveragedForTheChoiceButFittedFully) {
 }
 
 TEST(IdentifyStructure, FindsPlayOperatorsWithoutSpuriousBlocks) {
-  const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 5),
-                              simulated(play_finger(), SignalName::sp2, 100, 0.03, 6)};
+  const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, rate_hz, 0.03, 5),
+                              simulated(play_finger(), SignalName::sp2, rate_hz, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::automatic);
   ASSERT_TRUE(found) << found.error();
   const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
@@ -274,8 +278,8 @@ TEST(IdentifyStructure, FindsPlayOperatorsWithoutSpuriousBlocks) {
 /// The fit must find the generalised play operators. A nonlinear gain after the operators cannot replace
 /// them, and pressure-dependent creep cannot replace them.
 TEST(IdentifyStructure, FindsNonlinearEnvelopesOfPlayOperators) {
-  const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
-                              simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
+  const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, rate_hz, 0.03, 5),
+                              simulated(bent_play_finger(), SignalName::sp2, rate_hz, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::automatic);
   ASSERT_TRUE(found) << found.error();
   EXPECT_LT(found->rmse_mm, 2 * 0.03) << "the true thresholds and envelopes are not on the grid of the fit";
@@ -294,8 +298,8 @@ TEST(IdentifyStructure, FindsAnEarlierPeakPressure) {
   model::Model trained = play_finger();
   const std::size_t plays = *model::position_of<model::PrandtlIshlinskii>(trained);
   trained.blocks[plays].values.front() = 50;
-  const std::vector<Log> logs{simulated(trained, SignalName::tp1, 100, 0.03, 5),
-                              simulated(trained, SignalName::sp2, 100, 0.03, 6)};
+  const std::vector<Log> logs{simulated(trained, SignalName::tp1, rate_hz, 0.03, 5),
+                              simulated(trained, SignalName::sp2, rate_hz, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(found) << found.error();
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
@@ -316,7 +320,7 @@ TEST(IdentifyStructure, FindsARegulatorWithoutMeasuredPressure) {
   for (const bool regulator : {false, true}) {
     std::vector<Log> logs;
     for (const SignalName signal : {SignalName::tp1, SignalName::sp2})
-      logs.push_back(simulated(regulator ? regulated : play_finger(), signal, 100, 0.03, 15));
+      logs.push_back(simulated(regulator ? regulated : play_finger(), signal, rate_hz, 0.03, 15));
     const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
     ASSERT_TRUE(found) << found.error();
     const auto position = model::position_of<model::PressureRegulator>(found->model);
@@ -335,7 +339,7 @@ TEST(IdentifyStructure, FindsASecondLag) {
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
   std::vector<Log> logs;
   for (const SignalName signal : {SignalName::tp1, SignalName::steps})
-    logs.push_back(simulated(slower, signal, 100, 0.03, 15));
+    logs.push_back(simulated(slower, signal, rate_hz, 0.03, 15));
   const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(found) << found.error();
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
@@ -349,7 +353,7 @@ TEST(IdentifyStructure, FindsASecondLag) {
 TEST(IdentifyStructure, FindsARateLimit) {
   const model::Model limited =
       model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
-  const auto found = identify_structure({simulated(limited, SignalName::steps, 100, 0.03, 15)},
+  const auto found = identify_structure({simulated(limited, SignalName::steps, rate_hz, 0.03, 15)},
                                         StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(found) << found.error();
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
@@ -366,7 +370,7 @@ TEST(IdentifyStructure, FindsARateLimit) {
 TEST(IdentifyStructure, FindsAResonance) {
   const model::Model ringing =
       model::with_block(play_finger(), {model::block_type<model::Inertia>(), {0.5, 0.15}});
-  const auto found = identify_structure({simulated(ringing, SignalName::steps, 100, 0.03, 15)},
+  const auto found = identify_structure({simulated(ringing, SignalName::steps, rate_hz, 0.03, 15)},
                                         StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(found) << found.error();
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
@@ -426,7 +430,7 @@ TEST(SimplestStart, UnknownStartIsKeptIfStatedOrRequired) {
 }
 
 TEST(IdentifyStructure, ResultIsIndependentOfTheDisplacementUnit) {
-  const Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 7);
+  const Log log = simulated(play_finger(), SignalName::tp1, rate_hz, 0.03, 7);
   const auto one = identify_structure({log}, StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(one);
   for (const double factor : {1e-3, 0.1, 1e3}) {
