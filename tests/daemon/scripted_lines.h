@@ -1,6 +1,7 @@
 #pragma once
 // Digital lines whose levels a test sets and reads.
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -21,11 +22,15 @@ namespace softgrip::daemon::testing {
 /// exist longer than the lines. Any thread may call the functions.
 class Terminals {
  public:
+  Terminals() = default;
+  /// Terminals in virtual time: if there is no edge, wait() advances the clock and returns immediately.
+  explicit Terminals(VirtualClock& clock) : virtual_clock_(&clock) {}
+
   /// Sets the logical level of an input. If the level changes and `with_edge` is true, also reports an edge.
   void set(drivers::GpioRole role, bool active, bool with_edge = true) {
     const std::scoped_lock lock(mutex_);
     bool& level = levels_[index(role)];
-    if (level != active && with_edge) edges_.push_back({role, active, clock_.now()});
+    if (level != active && with_edge) edges_.push_back({role, active, now()});
     level = active;
     changed_.notify_all();
   }
@@ -49,10 +54,13 @@ class Terminals {
  private:
   class Lines;
   static std::size_t index(drivers::GpioRole role) { return static_cast<std::size_t>(role); }
+  [[nodiscard]] Nanoseconds now() const {
+    return virtual_clock_ != nullptr ? virtual_clock_->now() : monotonic_now();
+  }
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  MonotonicClock clock_;
+  VirtualClock* virtual_clock_ = nullptr;
   std::array<bool, drivers::gpio_role_count> levels_{};
   std::array<std::vector<bool>, drivers::gpio_role_count> written_;
   std::deque<drivers::GpioEdge> edges_;
@@ -65,8 +73,12 @@ class Terminals::Lines final : public drivers::GpioLines {
 
   std::optional<std::size_t> wait(Nanoseconds timeout, std::span<drivers::GpioEdge> edges) noexcept override {
     std::unique_lock lock(terminals_.mutex_);
-    terminals_.changed_.wait_for(lock, std::chrono::nanoseconds(timeout),
-                                 [&] { return terminals_.failed_ || !terminals_.edges_.empty(); });
+    const auto is_due = [&] { return terminals_.failed_ || !terminals_.edges_.empty(); };
+    if (terminals_.virtual_clock_ == nullptr) {
+      terminals_.changed_.wait_for(lock, std::chrono::nanoseconds(timeout), is_due);
+    } else if (!is_due()) {
+      terminals_.virtual_clock_->advance(std::max<Nanoseconds>(timeout, 1'000));  // the call takes 1 us
+    }
     if (terminals_.failed_) return std::nullopt;
     std::size_t count = 0;
     while (count < edges.size() && !terminals_.edges_.empty()) {

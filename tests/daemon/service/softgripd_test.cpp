@@ -199,7 +199,10 @@ TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
     ApiClient client(socket());
     ASSERT_TRUE(client.open()) << process.output();
     ASSERT_TRUE(until_state(client, "idle"));
-    ASSERT_EQ(client.ask({{"command", "start"}, {"sequence", "pick_stone"}})["ok"], true);
+    const json short_hold{{"hold_s", 0.5}};
+    ASSERT_EQ(
+        client.ask({{"command", "start"}, {"sequence", "pick_stone"}, {"parameters", short_hold}})["ok"],
+        true);
     ASSERT_TRUE(until_state(client, "running"));
     ASSERT_TRUE(until_state(client, "idle", 30)) << "the sequence runs to its end although the disk is full";
     const json end = status(client);
