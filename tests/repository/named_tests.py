@@ -5,6 +5,9 @@ A document names a test in inline code or in a code block. The name can be `Suit
 `repository.name` of CTest, or `name_test`, a program or a file. In Python, the name is `test_module`,
 `test_module.Class` or `test_module.Class.test_method`. `*` matches any text. A word `.Name*` refers to the suite of the
 preceding word. The tests of CTest are read from BUILD_DIR.
+
+With a build, also checks that every pattern of tests/CMakeLists.txt that gives tests a label selects a test of its
+program.
 """
 
 import argparse
@@ -12,6 +15,7 @@ import ast
 import fnmatch
 import pathlib
 import re
+import subprocess
 import sys
 
 import paths
@@ -71,6 +75,23 @@ def test_programs():
     return programs | stems
 
 
+def patterns_without_tests(build):
+    """Returns a finding for each pattern of a label that selects no test of its program."""
+    place = "tests/CMakeLists.txt"
+    found = []
+    for program, arguments in re.findall(r"^softgrip_test\((\w+)([^)]*)\)", (tree.ROOT / place).read_text(), re.MULTILINE):
+        option = ""
+        for word in arguments.split():
+            if word.isupper():
+                option = word
+            elif option in ("REALTIME", "LONG", "CAMPAIGN"):
+                told = subprocess.run([build / "tests" / program, "--gtest_list_tests", f"--gtest_filter={word}"],
+                                      capture_output=True, text=True, check=True).stdout
+                if not re.search(r"^  \w", told, re.MULTILINE):
+                    found.append(f"{place}: `{word}`: {program} has no such test")
+    return found
+
+
 class Tests:
     def __init__(self, build):
         self.google, self.python, self.ctest = google_tests(), python_tests(), ctest_tests(build)
@@ -106,13 +127,14 @@ def findings_of(place, words, tests):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path)
-    tests, findings, pages = Tests(parser.parse_args().build), [], paths.documents()
+    build = parser.parse_args().build
+    tests, findings, pages = Tests(build), patterns_without_tests(build) if build else [], paths.documents()
     for page in pages:
         text = page.read_text()
         made = paths.made_by_the_reader(page, text)
         words = ((number, word) for number, word in paths.words_of(text) if not made(word))
         findings += findings_of(page.relative_to(tree.ROOT), words, tests)
-    print("\n".join(findings) or f"{len(pages)} documents name no test that does not exist")
+    print("\n".join(findings) or f"{len(pages)} documents and all labels name no test that does not exist")
     return 1 if findings else 0
 
 
