@@ -1,12 +1,18 @@
 """Checks every line that the daemon sends against the schema that the package installs."""
 
 import functools
+import importlib
 import json
 import pathlib
 
-import jsonschema
-
 SCHEMA = pathlib.Path(__file__).resolve().parents[2] / "daemon/socket/socket-api-1.schema.json"
+
+
+@functools.cache
+def jsonschema():
+    """Imports jsonschema when the first line is checked. The import takes half of the start of a test, and many tests
+    check no line."""
+    return importlib.import_module("jsonschema")
 
 
 @functools.cache
@@ -16,7 +22,7 @@ def validator(name=None):
     if name:
         schema.pop("oneOf")
         schema["$ref"] = f"#/$defs/{name}"
-    return jsonschema.Draft202012Validator(schema)
+    return jsonschema().Draft202012Validator(schema)
 
 
 RESULTS = {"start": "accepted", "stop": "accepted", "vent": "accepted", "release": "accepted",
@@ -29,7 +35,7 @@ def check(line, command=None):
     line that does not match."""
     result = line.get("result") if command and line.get("ok") else None
     name, value = (RESULTS.get(command, command), result) if result is not None else (None, line)
-    error = jsonschema.exceptions.best_match(validator(name).iter_errors(value))
+    error = jsonschema().exceptions.best_match(validator(name).iter_errors(value))
     if error:
         raise AssertionError(f"{command}: {error.json_path}: {error.message}")
     if result is not None and set(line) != {"id", "ok", "result"}:
