@@ -27,7 +27,7 @@ class Files(bench.BenchTest):
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
         sanitized = b"__asan_init" in bench.SOFTGRIP.read_bytes()
-        done = subprocess.run([bench.SOFTGRIP, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
+        done = subprocess.run([bench.SOFTGRIP, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300 * bench.PATIENCE,
                               stdin=subprocess.DEVNULL, preexec_fn=None if sanitized else limit)
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertNotIn("bad_alloc", done.stderr)

@@ -22,7 +22,7 @@ class Figures(unittest.TestCase):
 
     def softgrip(self, *arguments, expect=0):
         done = subprocess.run([str(bench.SOFTGRIP), *map(str, arguments)], cwd=bench.SOURCE, capture_output=True,
-                              text=True, timeout=150)
+                              text=True, timeout=150 * bench.PATIENCE)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
 
