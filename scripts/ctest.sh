@@ -1,6 +1,6 @@
 # A file for other scripts. Its functions run the tests. Tests with the label `realtime` (tests/CMakeLists.txt) measure
 # real time on a shared computer, so they get a second attempt. All other tests get one attempt, because a second
-# attempt would hide a defect that occurs in 1 of 10 runs. The real-time tests mostly wait, so four of them run per
+# attempt would hide a defect that occurs in 1 of 10 runs. The real-time tests mostly wait, so five of them run per
 # processor at the same time.
 
 # Tests that compute run at the same time as the real-time tests. They run in the idle scheduling class, so the
@@ -30,7 +30,7 @@ end_computing_tests() {
 run_real_time_tests() {
   local preset=$1 without=$2
   shift 2
-  ctest --preset "$preset" -j $((4 * $(nproc))) -L '^realtime$' ${without:+-LE "^($without)\$"} --repeat until-pass:2 "$@"
+  ctest --preset "$preset" -j $((5 * $(nproc))) -L '^realtime$' ${without:+-LE "^($without)\$"} --repeat until-pass:2 "$@"
 }
 
 # run_ctest PRESET LABELS [CTEST OPTION ...]  runs both groups of tests
