@@ -137,7 +137,7 @@ class Notebooks(bench.BenchTest):
         program = self.write("cells.py", "\n\n".join(cells))
         before_s = self.computed_s()
         done = subprocess.run([sys.executable, program], cwd=self.folder, text=True, capture_output=True,
-                              timeout=170, env={**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(MODULE)})
+                              timeout=170 * bench.PATIENCE, env={**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(MODULE)})
         self.assertEqual(done.returncode, 0, f"{done.stdout}\n{done.stderr}")
         took_s = self.computed_s() - before_s
         print(f"{name}: {took_s:.0f} s")
