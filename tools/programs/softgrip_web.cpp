@@ -13,7 +13,7 @@
 #include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/program.h"
-#include "tools/web/places.h"
+#include "tools/web/connection_limits.h"
 #include "tools/web/server.h"
 
 namespace softgrip::web {
@@ -63,11 +63,11 @@ ExitCode run(const Options& options) {
     tokens = std::move(*loaded);
   }
   if (options.check) return ExitCode::done;
-  if (const std::size_t places = places_for(settings->max_connections, descriptor_limit());
-      places < settings->max_connections) {
+  if (const std::size_t available = max_connections_for(settings->max_connections, descriptor_limit());
+      available < settings->max_connections) {
     std::fprintf(stderr,
                  "softgrip-web: the limit of open files allows %zu connections, not %zu (max_connections)\n",
-                 places, settings->max_connections);
+                 available, settings->max_connections);
   }
   Descriptor signals = tools::take_server_signals();
   auto listener = net::listen_tcp(settings->address, settings->port);

@@ -52,59 +52,59 @@ struct Archive::Shared {
   explicit Shared(std::string folder) : recordings(std::move(folder)) {}
 
   void work();
-  void do_quick_ones();
+  void run_quick_tasks();
   void list(const DiskTasks& tasks);
   void answer(DiskTask& task) const;
-  void tell() const noexcept;
-  [[nodiscard]] DiskTasks take_quick_ones();
+  void notify() const noexcept;
+  [[nodiscard]] DiskTasks take_quick_tasks();
 
-  Descriptor told{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  Descriptor done_event{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   Recordings recordings;  // used by the disk thread and by no other thread
   std::mutex mutex;
   std::condition_variable changed;
   DiskTasks quick;     // waiting tasks of all kinds except lists of recordings
   DiskTasks listings;  // waiting tasks for lists of recordings
-  bool ends = false;
-  bool ended = false;
+  bool stop_requested = false;
+  bool stopped = false;
 };
 
 void Archive::Shared::work() {
   SteadyClock::time_point next_listing = SteadyClock::now();
   std::unique_lock lock(mutex);
-  while (!ends) {
+  while (!stop_requested) {
     if (!quick.empty()) {
       lock.unlock();
-      do_quick_ones();
+      run_quick_tasks();
       lock.lock();
     } else if (listings.empty()) {
       changed.wait(lock);
     } else if (SteadyClock::now() < next_listing) {
       changed.wait_until(lock, next_listing);
     } else {
-      const DiskTasks asked = std::exchange(listings, {});
+      const DiskTasks tasks = std::exchange(listings, {});
       const SteadyClock::time_point began = SteadyClock::now();
       lock.unlock();
-      list(asked);
+      list(tasks);
       lock.lock();
       next_listing = began + std::max<SteadyClock::duration>(listing_pause, 2 * (SteadyClock::now() - began));
     }
   }
-  ended = true;
+  stopped = true;
   changed.notify_all();
 }
 
-Archive::Shared::DiskTasks Archive::Shared::take_quick_ones() {
+Archive::Shared::DiskTasks Archive::Shared::take_quick_tasks() {
   const std::lock_guard lock(mutex);
   return std::exchange(quick, {});
 }
 
-void Archive::Shared::do_quick_ones() {
-  for (const std::shared_ptr<DiskTask>& task : take_quick_ones()) {
+void Archive::Shared::run_quick_tasks() {
+  for (const std::shared_ptr<DiskTask>& task : take_quick_tasks()) {
     if (task.use_count() == 1)
       continue;  // no object waits for the answer of this task, so the task is
                  // skipped
     answer(*task);
-    tell();
+    notify();
   }
 }
 
@@ -112,8 +112,8 @@ void Archive::Shared::answer(DiskTask& task) const try {
   const DiskRequest& disk_request = task.request();
   if (disk_request.kind == DiskRequest::Kind::health) {
     task.answer_health(tools::last_health(recordings.folder()));
-  } else if (disk_request.kind == DiskRequest::Kind::piece) {
-    const auto bytes = read_start(*disk_request.from, piece);
+  } else if (disk_request.kind == DiskRequest::Kind::chunk) {
+    const auto bytes = read_start(*disk_request.from, chunk_size);
     task.answer_text(std::make_shared<const std::string>(bytes.value_or(std::string())));
   } else {
     auto opened = recordings.open(disk_request.recording, disk_request.name);
@@ -125,17 +125,17 @@ void Archive::Shared::answer(DiskTask& task) const try {
 
 void Archive::Shared::list(const DiskTasks& tasks) {
   if (std::all_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.use_count() == 1; })) return;
-  const Json list = recordings.list(wall_time_now(), [this] { do_quick_ones(); });
+  const Json list = recordings.list(wall_time_now(), [this] { run_quick_tasks(); });
   const auto text = std::make_shared<const std::string>(
       Json{{"recordings", list}}.dump(-1, ' ', false, Json::error_handler_t::replace));
   for (const std::shared_ptr<DiskTask>& task : tasks) task->answer_text(text);
-  tell();
+  notify();
 }
 
-void Archive::Shared::tell() const noexcept {
+void Archive::Shared::notify() const noexcept {
   // The write fails if the counter is full, and for no other reason. The descriptor is then already readable,
   // which is the purpose of the write.
-  [[maybe_unused]] const int result = ::eventfd_write(told.get(), 1);
+  [[maybe_unused]] const int result = ::eventfd_write(done_event.get(), 1);
 }
 
 Archive::Archive(std::string folder)
@@ -143,18 +143,18 @@ Archive::Archive(std::string folder)
 
 Archive::~Archive() {
   std::unique_lock lock(shared_->mutex);
-  shared_->ends = true;
+  shared_->stop_requested = true;
   shared_->changed.notify_all();
-  const bool ended = shared_->changed.wait_for(lock, farewell, [this] { return shared_->ended; });
+  const bool stopped = shared_->changed.wait_for(lock, shutdown_timeout, [this] { return shared_->stopped; });
   lock.unlock();
-  if (ended) {
+  if (stopped) {
     thread_.join();
   } else {
     thread_.detach();
   }
 }
 
-std::shared_ptr<const DiskTask> Archive::ask(DiskRequest disk_request) {
+std::shared_ptr<const DiskTask> Archive::submit(DiskRequest disk_request) {
   auto task = std::make_shared<DiskTask>(std::move(disk_request));
   const std::lock_guard lock(shared_->mutex);
   (task->request().kind == DiskRequest::Kind::listing ? shared_->listings : shared_->quick).push_back(task);
@@ -163,12 +163,12 @@ std::shared_ptr<const DiskTask> Archive::ask(DiskRequest disk_request) {
 }
 
 int Archive::descriptor() const noexcept {
-  return shared_->told.get();
+  return shared_->done_event.get();
 }
 
-void Archive::hear() const noexcept {
+void Archive::clear_event() const noexcept {
   eventfd_t count = 0;
-  [[maybe_unused]] const int result = ::eventfd_read(shared_->told.get(), &count);
+  [[maybe_unused]] const int result = ::eventfd_read(shared_->done_event.get(), &count);
 }
 
 }  // namespace softgrip::web

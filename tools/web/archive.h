@@ -22,7 +22,7 @@ struct DiskRequest {
     health,   ///< reads the last result of `softgrip health`
     listing,  ///< reads the list of recordings
     file,     ///< opens one file of a recording
-    piece     ///< reads the next bytes of an open file, at most `Archive::piece` bytes
+    chunk     ///< reads the next bytes of an open file, at most `Archive::chunk_size` bytes
   };
   Kind kind = Kind::listing;
   std::string recording = {};
@@ -39,7 +39,7 @@ class DiskTask {
   [[nodiscard]] bool done() const noexcept { return done_; }
   /// For a health request: returns the last health result; null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return *health_; }
-  /// For a list of recordings: returns `{"recordings": [...]}`. For a piece of a file: returns the bytes, or
+  /// For a list of recordings: returns `{"recordings": [...]}`. For a chunk of a file: returns the bytes, or
   /// "" at the end of the file or after a read error.
   [[nodiscard]] const std::string& text() const noexcept { return *text_; }
   /// For a file: returns the open file; null if the file does not exist or may not be shown.
@@ -63,12 +63,12 @@ class DiskTask {
 class Archive {
  public:
   /// Largest number of bytes of a file that are read into memory at once for a download.
-  static constexpr std::size_t piece = std::size_t{16} << 10U;
+  static constexpr std::size_t chunk_size = std::size_t{16} << 10U;
   /// Shortest time between the starts of two lists of recordings. The pause after a list is at least as long
   /// as the creation of this list took, so lists need at most half of the disk thread's time.
   static constexpr std::chrono::milliseconds listing_pause{200};
   /// Longest time for which the destructor waits for the disk thread. A disk call of this thread may block.
-  static constexpr std::chrono::milliseconds farewell{1000};
+  static constexpr std::chrono::milliseconds shutdown_timeout{1000};
 
   /// Starts the disk thread. An empty `folder` means that there are no recordings.
   explicit Archive(std::string folder);
@@ -80,12 +80,12 @@ class Archive {
 
   /// Adds a request without waiting. All requests for a list that arrive before the creation of the list
   /// begins get the same list. All other requests are processed before the lists.
-  [[nodiscard]] std::shared_ptr<const DiskTask> ask(DiskRequest disk_request);
+  [[nodiscard]] std::shared_ptr<const DiskTask> submit(DiskRequest disk_request);
   /// Returns a descriptor for poll(), which becomes readable when a task is done.
   [[nodiscard]] int descriptor() const noexcept;
   /// Makes the descriptor unreadable until the next task is done. Call this function when the descriptor is
   /// readable.
-  void hear() const noexcept;
+  void clear_event() const noexcept;
 
  private:
   struct Shared;

@@ -18,7 +18,7 @@ Frame refused(int status) {
   return {Frame::State::refused, 0, status};
 }
 
-bool is_letter_of_a_name(char character) {
+bool is_header_name_character(char character) {
   const auto within = [character](char first, char last) { return character >= first && character <= last; };
   return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_';
 }
@@ -27,7 +27,7 @@ bool is_printable(char character) {
   return character >= ' ' && character <= '~';
 }
 
-bool equal_but_for_case(std::string_view name, std::string_view lower) {
+bool equal_ignoring_case(std::string_view name, std::string_view lower) {
   const auto same = [](char one, char other) {
     return (one >= 'A' && one <= 'Z' ? static_cast<char>(one - 'A' + 'a') : one) == other;
   };
@@ -73,16 +73,16 @@ int check_header(std::string_view line, Lengths& lengths) {
   const std::size_t colon = line.find(':');
   const std::string_view name = line.substr(0, std::min(colon, line.size()));
   if (colon == std::string_view::npos || name.empty() ||
-      !std::all_of(name.begin(), name.end(), is_letter_of_a_name)) {
+      !std::all_of(name.begin(), name.end(), is_header_name_character)) {
     return 400;
   }
   std::string_view value = line.substr(colon + 1);
   while (value.starts_with(' ')) value.remove_prefix(1);
   while (value.ends_with(' ')) value.remove_suffix(1);
-  if (equal_but_for_case(name, "transfer-encoding")) return 501;
-  if (equal_but_for_case(name, "expect")) return 417;
-  if (equal_but_for_case(name, "host")) return ++lengths.hosts > 1 ? 400 : 0;
-  if (!equal_but_for_case(name, "content-length")) return 0;
+  if (equal_ignoring_case(name, "transfer-encoding")) return 501;
+  if (equal_ignoring_case(name, "expect")) return 417;
+  if (equal_ignoring_case(name, "host")) return ++lengths.hosts > 1 ? 400 : 0;
+  if (!equal_ignoring_case(name, "content-length")) return 0;
   const auto length = length_in(value);
   if (!length || lengths.body) return 400;
   lengths.body = length;
@@ -104,12 +104,12 @@ bool Client::receive() {
       // Some clients close their sending side after the request and then wait for the response, so their
       // connection is kept. A browser that reads a stream closes its side when the page is closed, so the
       // stream is ended.
-      const bool known = said_all_;
-      said_all_ = true;
-      return !known && phase_ != Phase::following;
+      const bool already_closed = input_closed_;
+      input_closed_ = true;
+      return !already_closed && phase_ != Phase::streaming;
     }
     // Bytes are stored while the request is incomplete. All bytes after the request are discarded.
-    if (phase_ == Phase::asking && in_.size() < longest_head + longest_body)
+    if (phase_ == Phase::receiving && in_.size() < longest_head + longest_body)
       in_.append(bytes.data(), static_cast<std::size_t>(count));
     if (static_cast<std::size_t>(count) < bytes.size()) return true;
     ++reads;
@@ -117,50 +117,50 @@ bool Client::receive() {
   return true;
 }
 
-bool Client::send_on(Nanoseconds now) {
-  const std::size_t end = std::min(out_.size(), sent_ + most_at_once);
+bool Client::send_pending(Nanoseconds now) {
+  const std::size_t end = std::min(out_.size(), sent_ + max_per_send);
   while (sent_ < end) {
     const ssize_t count = ::send(socket_.get(), out_.data() + sent_, end - sent_, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     sent_ += static_cast<std::size_t>(count);
-    moved_at_ = now;
+    last_progress_at_ = now;
   }
   if (sent_ < out_.size()) return true;
   std::string().swap(out_);  // swap() also frees the memory of the buffer, because the first message of a
                              // stream is large
   sent_ = 0;
-  if (phase_ != Phase::answering) return true;
+  if (phase_ != Phase::responding) return true;
   // shutdown() announces the end of the response to the client. close() is not called here, because the
   // system discards the response if a socket with unread input is closed.
   ::shutdown(socket_.get(), SHUT_WR);
   return false;
 }
 
-bool Client::late(Nanoseconds now) const noexcept {
+bool Client::timed_out(Nanoseconds now) const noexcept {
   switch (phase_) {
-    case Phase::asking:
-      return now - came_at_ > longest_question;
+    case Phase::receiving:
+      return now - connected_at_ > request_timeout;
     case Phase::waiting:
       return false;
-    case Phase::answering:
-    case Phase::loading:
-      return now - moved_at_ > longest_pause || now - answered_at_ > longest_answer;
-    case Phase::following:
-      return has_to_send() && now - moved_at_ > longest_pause;
+    case Phase::responding:
+    case Phase::sending_file:
+      return now - last_progress_at_ > stall_timeout || now - responded_at_ > response_timeout;
+    case Phase::streaming:
+      return has_unsent() && now - last_progress_at_ > stall_timeout;
   }
   return true;
 }
 
-void Client::answer(std::string bytes, Phase next, Nanoseconds now) {
+void Client::respond(std::string bytes, Phase next, Nanoseconds now) {
   phase_ = next;
   std::string().swap(in_);
   out_ = std::move(bytes);
-  moved_at_ = answered_at_ = now;
+  last_progress_at_ = responded_at_ = now;
 }
 
 bool Client::add(std::string_view bytes) {
-  if (unsent() + bytes.size() > most_kept) return false;
+  if (unsent() + bytes.size() > max_buffered) return false;
   out_.erase(0, sent_);
   sent_ = 0;
   out_ += bytes;

@@ -12,49 +12,51 @@
 
 namespace softgrip::web {
 
-/// Receives one request and sends one response: a complete response, a file in pieces, or a stream of
+/// Receives one request and sends one response: a complete response, a file in chunks, or a stream of
 /// messages. A client that reads too slowly is disconnected. The number of unsent bytes per client is
 /// limited, so that a slow client does not delay other clients.
 class Client {
  public:
   enum class Phase : unsigned char {
-    asking,     ///< the request of the client is not yet complete
-    waiting,    ///< the response waits for the daemon or the disk
-    answering,  ///< the response is complete; the connection ends when all bytes are sent
-    loading,    ///< a file is being sent; pieces of the file are added until finish() is called
-    following   ///< a stream is being sent; messages are added to the stream
+    receiving,     ///< the request of the client is not yet complete
+    waiting,       ///< the response waits for the daemon or the disk
+    responding,    ///< the response is complete; the connection ends when all bytes are sent
+    sending_file,  ///< a file is being sent; chunks of the file are added until finish() is called
+    streaming      ///< a stream is being sent; messages are added to the stream
   };
 
-  static constexpr Nanoseconds longest_question = 5 * ns_per_s;
+  static constexpr Nanoseconds request_timeout = 5 * ns_per_s;
   /// Longest time without progress of a response. After this time, the client is disconnected.
-  static constexpr Nanoseconds longest_pause = 10 * ns_per_s;
+  static constexpr Nanoseconds stall_timeout = 10 * ns_per_s;
   /// Longest time from the request to the end of the response.
-  static constexpr Nanoseconds longest_answer = 60 * ns_per_s;
-  static constexpr std::size_t most_kept = std::size_t{1} << 20U;  ///< largest number of bytes that wait to
-                                                                   ///< be sent
-  /// Largest number of bytes that one call of send_on() sends, so that a fast reader does not delay the other
-  /// clients.
-  static constexpr std::size_t most_at_once = std::size_t{256} << 10U;
+  static constexpr Nanoseconds response_timeout = 60 * ns_per_s;
+  static constexpr std::size_t max_buffered = std::size_t{1} << 20U;  ///< largest number of bytes that wait
+                                                                      ///< to be sent
+  /// Largest number of bytes that one call of send_pending() sends, so that a fast reader does not delay the
+  /// other clients.
+  static constexpr std::size_t max_per_send = std::size_t{256} << 10U;
 
-  Client(Descriptor socket, Nanoseconds now) : socket_(std::move(socket)), came_at_(now), moved_at_(now) {}
+  Client(Descriptor socket, Nanoseconds now)
+      : socket_(std::move(socket)), connected_at_(now), last_progress_at_(now) {}
 
   /// Receives the bytes that have arrived. Returns false if the client has disconnected.
   [[nodiscard]] bool receive();
   /// Sends as many bytes as the socket accepts. Returns false if the client has disconnected or the response
   /// is complete.
-  [[nodiscard]] bool send_on(Nanoseconds now);
+  [[nodiscard]] bool send_pending(Nanoseconds now);
   /// Returns true if the client has exceeded one of the time limits.
-  [[nodiscard]] bool late(Nanoseconds now) const noexcept;
+  [[nodiscard]] bool timed_out(Nanoseconds now) const noexcept;
 
   /// Marks the request as waiting for the daemon or the disk.
   void wait() noexcept { phase_ = Phase::waiting; }
-  /// Begins the response and discards the request. `next` is the new phase: answering, loading or following.
-  void answer(std::string bytes, Phase next, Nanoseconds now);
-  /// Adds messages to a stream, or a piece to a file. If the unsent bytes would exceed `most_kept`, adds
+  /// Begins the response and discards the request. `next` is the new phase: responding, sending_file or
+  /// streaming.
+  void respond(std::string bytes, Phase next, Nanoseconds now);
+  /// Adds messages to a stream, or a chunk to a file. If the unsent bytes would exceed `max_buffered`, adds
   /// nothing and returns false.
   [[nodiscard]] bool add(std::string_view bytes);
   /// Ends the stream or the file. Bytes that wait in the buffer are sent before the connection ends.
-  void finish() noexcept { phase_ = Phase::answering; }
+  void finish() noexcept { phase_ = Phase::responding; }
 
   /// Discards the unsent bytes and frees their memory.
   void drop_unsent() noexcept {
@@ -64,25 +66,25 @@ class Client {
 
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
   [[nodiscard]] const std::string& request() const noexcept { return in_; }
-  [[nodiscard]] Nanoseconds came_at() const noexcept { return came_at_; }
+  [[nodiscard]] Nanoseconds connected_at() const noexcept { return connected_at_; }
   /// Returns the time of the last progress of the response. If there was no progress, returns the time at
   /// which the response began.
-  [[nodiscard]] Nanoseconds moved_at() const noexcept { return moved_at_; }
-  [[nodiscard]] bool has_to_send() const noexcept { return !out_.empty(); }
+  [[nodiscard]] Nanoseconds last_progress_at() const noexcept { return last_progress_at_; }
+  [[nodiscard]] bool has_unsent() const noexcept { return !out_.empty(); }
   /// Returns the number of bytes that wait to be sent.
   [[nodiscard]] std::size_t unsent() const noexcept { return out_.size() - sent_; }
   /// Returns true if the client has closed its sending side. In this case, poll() need not report input of
   /// this client.
-  [[nodiscard]] bool said_all() const noexcept { return said_all_; }
+  [[nodiscard]] bool input_closed() const noexcept { return input_closed_; }
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
  private:
   Descriptor socket_;
-  Nanoseconds came_at_;
-  Nanoseconds moved_at_;
-  Nanoseconds answered_at_ = 0;
-  Phase phase_ = Phase::asking;
-  bool said_all_ = false;
+  Nanoseconds connected_at_;
+  Nanoseconds last_progress_at_;
+  Nanoseconds responded_at_ = 0;
+  Phase phase_ = Phase::receiving;
+  bool input_closed_ = false;
   std::string in_;
   std::string out_;
   std::size_t sent_ = 0;  // number of bytes of out_ that have been sent

@@ -15,9 +15,9 @@ using Json = nlohmann::ordered_json;
 
 /// Longest wait for the response to a command. A start may need one second for planning, and additional time
 /// for the disk.
-constexpr Nanoseconds longest_wait = 8 * ns_per_s;
-/// Shortest time between two stop requests for the starts that were given up (GivenUp).
-constexpr Nanoseconds pause_between_stops = ns_per_s / 4;
+constexpr Nanoseconds response_timeout = 8 * ns_per_s;
+/// Shortest time between two stop requests for the abandoned starts (AbandonedStart).
+constexpr Nanoseconds stop_retry_period = ns_per_s / 4;
 constexpr std::size_t longest_sequence_name = 128;
 constexpr std::size_t most_parameters = 32;
 
@@ -70,16 +70,17 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
   const std::string& command = request["command"].get_ref<const std::string&>();
   const bool is_urgent = command == "stop" || command == "vent";
   const bool is_start = command == "start";
-  if (waiting_.size() >= (is_urgent ? 2 * most_waiting : most_waiting))
+  if (pending_.size() >= (is_urgent ? 2 * max_pending : max_pending))
     return tl::unexpected<Json>{
         failure("busy", "too many commands are still waiting for a response of the daemon")};
-  if (is_start && given_up_.size() >= most_waiting)
+  if (is_start && abandoned_.size() >= max_pending)
     return tl::unexpected<Json>{failure("busy", "the daemon has not confirmed the stops of earlier starts")};
   if (auto refusal = connect()) return tl::unexpected{std::move(*refusal)};
-  Waiting waiting{now + longest_wait, is_start ? tools::new_start_id() : std::string(), std::nullopt};
-  if (is_start) request["start_id"] = waiting.start_id;
+  PendingCommand pending{now + response_timeout, is_start ? tools::new_start_id() : std::string(),
+                         std::nullopt};
+  if (is_start) request["start_id"] = pending.start_id;
   const std::uint64_t number = send_numbered(std::move(request));
-  waiting_[number] = std::move(waiting);
+  pending_[number] = std::move(pending);
   return number;
 }
 
@@ -94,103 +95,103 @@ std::optional<Json> Commander::connect() {
 }
 
 std::uint64_t Commander::send_numbered(Json request) {
-  request["id"] = ++last_;
+  request["id"] = ++last_id_;
   daemon_.send(request);
-  return last_;
+  return last_id_;
 }
 
-std::optional<Json> Commander::take_answer(std::uint64_t number, Nanoseconds now) {
-  const auto found = waiting_.find(number);
-  if (found == waiting_.end())
+std::optional<Json> Commander::take_response(std::uint64_t number, Nanoseconds now) {
+  const auto found = pending_.find(number);
+  if (found == pending_.end())
     return failure("no_answer", "the daemon sent a response that belongs to no request");
-  Waiting& waiting = found->second;
-  if (!waiting.answer && now > waiting.give_up) {
-    end(waiting,
-        failure("no_answer", waiting.start_id.empty() ? "the daemon does not respond"
-                                                      : "the daemon does not respond; after a reconnection, "
-                                                        "softgrip-web stops the sequence of this start"));
+  PendingCommand& pending = found->second;
+  if (!pending.response && now > pending.deadline) {
+    complete(pending, failure("no_answer", pending.start_id.empty()
+                                               ? "the daemon does not respond"
+                                               : "the daemon does not respond; after a reconnection, "
+                                                 "softgrip-web stops the sequence of this start"));
   }
-  std::optional<Json> answer = std::move(waiting.answer);
-  if (answer) waiting_.erase(found);
-  return answer;
+  std::optional<Json> response = std::move(pending.response);
+  if (response) pending_.erase(found);
+  return response;
 }
 
 bool Commander::is_open_start(std::uint64_t number) const {
-  const auto found = waiting_.find(number);
-  return found != waiting_.end() && !found->second.start_id.empty();
+  const auto found = pending_.find(number);
+  return found != pending_.end() && !found->second.start_id.empty();
 }
 
-void Commander::forget(std::uint64_t number) {
-  const auto found = waiting_.find(number);
-  if (found == waiting_.end()) return;
-  give_up(found->second);
-  waiting_.erase(found);
+void Commander::abandon(std::uint64_t number) {
+  const auto found = pending_.find(number);
+  if (found == pending_.end()) return;
+  abandon_start(found->second);
+  pending_.erase(found);
 }
 
-void Commander::leave() {
-  for (auto& [number, waiting] : waiting_) give_up(waiting);
-  waiting_.clear();
+void Commander::abandon_all() {
+  for (auto& [number, pending] : pending_) abandon_start(pending);
+  pending_.clear();
 }
 
-void Commander::look_after(Nanoseconds now) {
-  if (daemon_ && !daemon_.hear([&](Json& line) { take(std::move(line)); })) lose();
-  stop_again(now);
+void Commander::update(Nanoseconds now) {
+  if (daemon_ && !daemon_.hear([&](Json& line) { process_line(std::move(line)); })) handle_disconnect();
+  retry_stops(now);
 }
 
-void Commander::take(Json line) {
+void Commander::process_line(Json line) {
   const auto id = line.find("id");
   const std::uint64_t number = id != line.end() && id->is_number_unsigned() ? id->get<std::uint64_t>() : 0;
-  if (const auto found = waiting_.find(number); found != waiting_.end())
-    return end(found->second, std::move(line));
-  const auto stopped = std::find_if(given_up_.begin(), given_up_.end(), [number](const GivenUp& start) {
-    return start.stop == number && number != 0;
-  });
-  if (stopped == given_up_.end()) return;
+  if (const auto found = pending_.find(number); found != pending_.end())
+    return complete(found->second, std::move(line));
+  const auto stopped =
+      std::find_if(abandoned_.begin(), abandoned_.end(),
+                   [number](const AbandonedStart& start) { return start.stop == number && number != 0; });
+  if (stopped == abandoned_.end()) return;
   stopped->stop = 0;
   // A daemon of an older version does not know `start_id`, so it has also refused the start. There is no
   // start to stop.
   const bool is_older = line.value("error", Json::object()).value("code", "") == "bad_request";
-  if (is_older || tools::confirms_stop(line)) given_up_.erase(stopped);
+  if (is_older || tools::confirms_stop(line)) abandoned_.erase(stopped);
 }
 
-void Commander::end(Waiting& waiting, Json answer) {
-  if (tools::refuses_start(answer)) waiting.start_id.clear();
-  if (!tools::DaemonClient::result_of(answer)) give_up(waiting);
-  waiting.answer = std::move(answer);
+void Commander::complete(PendingCommand& pending, Json response) {
+  if (tools::refuses_start(response)) pending.start_id.clear();
+  if (!tools::DaemonClient::result_of(response)) abandon_start(pending);
+  pending.response = std::move(response);
 }
 
-void Commander::give_up(Waiting& waiting) {
-  if (waiting.start_id.empty()) return;
-  given_up_.push_back({std::exchange(waiting.start_id, {}), 0});
-  if (daemon_) stop(given_up_.back());
+void Commander::abandon_start(PendingCommand& pending) {
+  if (pending.start_id.empty()) return;
+  abandoned_.push_back({std::exchange(pending.start_id, {}), 0});
+  if (daemon_) stop(abandoned_.back());
 }
 
-void Commander::stop(GivenUp& start) {
+void Commander::stop(AbandonedStart& start) {
   start.stop = send_numbered(tools::stop_of(start.start_id));
 }
 
-/// Requests to stop two kinds of starts: those that were given up while there was no connection, and those
+/// Requests to stop two kinds of starts: those that were abandoned while there was no connection, and those
 /// whose stop the daemon has not confirmed.
-void Commander::stop_again(Nanoseconds now) {
-  const auto is_due = [](const GivenUp& start) { return start.stop == 0; };
-  if (std::none_of(given_up_.begin(), given_up_.end(), is_due)) return;
-  if (stopped_at_ != 0 && now - stopped_at_ < pause_between_stops) return;
-  stopped_at_ = now;
+void Commander::retry_stops(Nanoseconds now) {
+  const auto is_due = [](const AbandonedStart& start) { return start.stop == 0; };
+  if (std::none_of(abandoned_.begin(), abandoned_.end(), is_due)) return;
+  if (last_retry_at_ != 0 && now - last_retry_at_ < stop_retry_period) return;
+  last_retry_at_ = now;
   if (connect()) return;
-  for (GivenUp& start : given_up_) {
+  for (AbandonedStart& start : abandoned_) {
     if (is_due(start)) stop(start);
   }
 }
 
-void Commander::lose() {
-  for (GivenUp& start : given_up_) start.stop = 0;
-  for (auto& [number, waiting] : waiting_) {
-    if (waiting.answer) continue;
-    end(waiting, failure("no_answer", waiting.start_id.empty()
-                                          ? "the connection to the daemon was lost before the daemon "
-                                            "responded: check if the command was executed"
-                                          : "the connection to the daemon was lost before the daemon "
-                                            "responded; softgrip-web stops the sequence of this start"));
+void Commander::handle_disconnect() {
+  for (AbandonedStart& start : abandoned_) start.stop = 0;
+  for (auto& [number, pending] : pending_) {
+    if (pending.response) continue;
+    complete(pending, failure("no_answer", pending.start_id.empty()
+                                               ? "the connection to the daemon was lost before the daemon "
+                                                 "responded: check if the command was executed"
+                                               : "the connection to the daemon was lost before the daemon "
+                                                 "responded; softgrip-web stops the sequence of this start"));
   }
 }
 

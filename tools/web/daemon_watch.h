@@ -16,19 +16,19 @@ class DaemonWatch {
 
   /// Reads the daemon's lines, sends the requests that are due, and reconnects after a loss. Must be called
   /// when the descriptor is readable, and several times per second.
-  void look_after(Nanoseconds now);
+  void update(Nanoseconds now);
   /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return daemon_.descriptor(); }
 
  private:
-  void greet(Nanoseconds now);
-  void take(nlohmann::ordered_json line, Nanoseconds now);
-  void take_result(std::uint64_t id, nlohmann::ordered_json result);
-  void ask_what_is_due(Nanoseconds now);
+  void send_initial_requests(Nanoseconds now);
+  void process_line(nlohmann::ordered_json line, Nanoseconds now);
+  void process_result(std::uint64_t id, nlohmann::ordered_json result);
+  void send_due_requests(Nanoseconds now);
 
   LiveState& state_;
   tools::DaemonLink daemon_;
-  Nanoseconds heard_at_ = 0;  // time of the last state that the daemon has sent
+  Nanoseconds last_status_at_ = 0;  // time of the last state that the daemon has sent
   Nanoseconds statistics_due_ = 0;
   Nanoseconds sequences_due_ = 0;
   std::string started_at_;  // start time of the daemon process that sent the last received events

@@ -38,7 +38,7 @@ class MemoryStream final : public httplib::Stream {
 
 /// Removes the byte ranges from a request, so that the response contains the complete file. With overlapping
 /// ranges, a client could make a large response of a small file.
-void forget_ranges(httplib::Request& request) {
+void remove_ranges(httplib::Request& request) {
   request.ranges.clear();
 }
 
@@ -48,9 +48,9 @@ std::string HttpEngine::answer(std::string_view request) {
   MemoryStream stream(request);
   bool closed = false;
 #if SOFTGRIP_HTTPLIB_ADDRESSES
-  process_request(stream, {}, 0, {}, 0, true, closed, forget_ranges);
+  process_request(stream, {}, 0, {}, 0, true, closed, remove_ranges);
 #else
-  process_request(stream, true, closed, forget_ranges);
+  process_request(stream, true, closed, remove_ranges);
 #endif
   return stream.take();
 }

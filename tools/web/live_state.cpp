@@ -10,8 +10,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Largest size of the messages that wait for take_news() [bytes]. At this size, new messages are dropped.
-constexpr std::size_t longest_news = std::size_t{1} << 20U;
+/// Largest size of the messages that wait for take_messages() [bytes]. At this size, new messages are
+/// dropped.
+constexpr std::size_t max_messages_size = std::size_t{1} << 20U;
 
 Json list_of(const std::deque<Json>& items) {
   Json list = Json::array();
@@ -27,15 +28,15 @@ std::string message_of(std::string_view kind, const Json& data) {
          "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
 }
 
-void LiveState::take_status(Json status) {
+void LiveState::set_status(Json status) {
   // If the time is smaller than in the last status, the daemon has restarted, so the old trend is removed.
   if (json_number(status, "time_s") < json_number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
-  note_trend();
-  if (news_.size() < longest_news) news_ += message_of("state", status_);
+  append_to_trend();
+  if (messages_.size() < max_messages_size) messages_ += message_of("state", status_);
 }
 
-void LiveState::note_trend() {
+void LiveState::append_to_trend() {
   const double now_s = json_number(status_, "time_s");
   Json sample = Json::array({now_s});
   for (const Json& channel : json_member(status_, "channels")) {
@@ -47,32 +48,32 @@ void LiveState::note_trend() {
     trend_.pop_front();
 }
 
-void LiveState::take_event(Json event) {
-  if (news_.size() < longest_news) news_ += message_of("happened", event);
+void LiveState::add_event(Json event) {
+  if (messages_.size() < max_messages_size) messages_ += message_of("happened", event);
   events_.push_back(std::move(event));
   if (events_.size() > events_kept) events_.pop_front();
 }
 
-void LiveState::take_statistics(Json statistics) {
+void LiveState::set_statistics(Json statistics) {
   statistics_ = std::move(statistics);
-  if (news_.size() < longest_news) news_ += message_of("statistics", statistics_);
+  if (messages_.size() < max_messages_size) messages_ += message_of("statistics", statistics_);
 }
 
-void LiveState::take_sequences(Json sequences) {
+void LiveState::set_sequences(Json sequences) {
   if (sequences == sequences_) return;
   sequences_ = std::move(sequences);
-  if (news_.size() < longest_news) news_ += message_of("sequences", sequences_);
+  if (messages_.size() < max_messages_size) messages_ += message_of("sequences", sequences_);
 }
 
-void LiveState::lose() {
+void LiveState::clear_live_data() {
   if (status_.is_null()) return;
   status_ = nullptr;
   statistics_ = nullptr;
   trend_.clear();
-  news_ += message_of("state", status_);
+  messages_ += message_of("state", status_);
 }
 
-std::string LiveState::greeting() const {
+std::string LiveState::snapshot_message() const {
   return message_of("hello", {{"status", status_},
                               {"statistics", statistics_},
                               {"sequences", sequences_},
@@ -80,8 +81,8 @@ std::string LiveState::greeting() const {
                               {"trend", list_of(trend_)}});
 }
 
-std::string LiveState::take_news() {
-  return std::exchange(news_, {});
+std::string LiveState::take_messages() {
+  return std::exchange(messages_, {});
 }
 
 }  // namespace softgrip::web

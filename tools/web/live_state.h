@@ -19,15 +19,15 @@ class LiveState {
   static constexpr std::size_t events_kept = 200;
 
   /// The functions take_... store new data of the daemon, and add a message for the open pages.
-  void take_status(nlohmann::ordered_json status);
-  void take_event(nlohmann::ordered_json event);
-  void take_statistics(nlohmann::ordered_json statistics);
-  void take_sequences(nlohmann::ordered_json sequences);
+  void set_status(nlohmann::ordered_json status);
+  void add_event(nlohmann::ordered_json event);
+  void set_statistics(nlohmann::ordered_json statistics);
+  void set_sequences(nlohmann::ordered_json sequences);
   /// Stores the last result of `softgrip health`, which is read from the disk.
-  void take_health(nlohmann::ordered_json health) { health_ = std::move(health); }
+  void set_health(nlohmann::ordered_json health) { health_ = std::move(health); }
   /// Discards the status, the statistics and the trend, because they are unknown. Keeps the past events. Must
   /// be called when the connection to the daemon is lost.
-  void lose();
+  void clear_live_data();
 
   /// Returns the last status; null if no daemon is connected.
   [[nodiscard]] const nlohmann::ordered_json& status() const noexcept { return status_; }
@@ -37,12 +37,12 @@ class LiveState {
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return health_; }
 
   /// Returns the complete state as a message. It is the first message of a stream of server-sent events.
-  [[nodiscard]] std::string greeting() const;
+  [[nodiscard]] std::string snapshot_message() const;
   /// Returns one message per change since the last call; "" if there was no change.
-  [[nodiscard]] std::string take_news();
+  [[nodiscard]] std::string take_messages();
 
  private:
-  void note_trend();
+  void append_to_trend();
 
   nlohmann::ordered_json status_;
   nlohmann::ordered_json statistics_;
@@ -52,7 +52,7 @@ class LiveState {
   // Samples of the trend, one per status: [time_s, [command, pressure, displacement, reference], ...]. Each
   // sample has one inner list per finger.
   std::deque<nlohmann::ordered_json> trend_;
-  std::string news_;
+  std::string messages_;
 };
 
 /// Formats one message of a stream of server-sent events.

@@ -77,9 +77,9 @@ std::string_view content_type_of(std::string_view name) {
   return found == kinds.end() ? std::string_view() : found->content_type;
 }
 
-Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& between) {
+Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& on_interval) {
   wall_now_ = wall_now;
-  between_ = between;
+  on_interval_ = on_interval;
   Json list = Json::array();
   const Descriptor top{folder_.empty() ? -1 : ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (!top) {
@@ -88,27 +88,27 @@ Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& between
     return list;
   }
   // The name of a recording begins with its start time, so sorted names are in the order of time.
-  bring_up_to_date(newest_, top, ".", {is_plain_name, true, most_considered});
+  refresh(newest_, top, ".", {is_plain_name, true, most_considered});
   std::map<std::string, Names> files;
   for (const std::string& name : newest_.names) {
     if (list.size() == most_listed) break;
-    pause();
+    call_on_interval();
     Names& shown = files[name];
     if (const auto known = files_.find(name); known != files_.end()) shown = std::move(known->second);
-    bring_up_to_date(shown, top, name, {is_shown, false, most_files});
+    refresh(shown, top, name, {is_shown, false, most_files});
     if (!shown.names.empty()) list.push_back({{"name", name}, {"files", shown.names}});
   }
   files_ = std::move(files);
   return list;
 }
 
-void Recordings::bring_up_to_date(Names& known, const Descriptor& parent, const std::string& name,
-                                  const Choice& choice) {
+void Recordings::refresh(Names& known, const Descriptor& parent, const std::string& name,
+                         const NameSelection& selection) {
   struct stat about {};
   const auto stamp = [&about] {
     return Stamp{about.st_dev, about.st_ino, about.st_ctim.tv_sec * ns_per_s + about.st_ctim.tv_nsec};
   };
-  if (::fstatat(parent.get(), name.c_str(), &about, AT_SYMLINK_NOFOLLOW) == 0 && known.settled &&
+  if (::fstatat(parent.get(), name.c_str(), &about, AT_SYMLINK_NOFOLLOW) == 0 && known.stamp_reliable &&
       known.stamp == stamp()) {
     return;
   }
@@ -116,12 +116,13 @@ void Recordings::bring_up_to_date(Names& known, const Descriptor& parent, const 
   Descriptor folder = open_folder_in(parent, name);
   if (!folder || ::fstat(folder.get(), &about) != 0) return;
   known.stamp = stamp();
-  const bool complete = read_names(std::move(folder), choice, known.names);
-  known.settled = complete && wall_now_ - known.stamp.changed_at > stamp_resolution;
+  const bool complete = read_names(std::move(folder), selection, known.names);
+  known.stamp_reliable = complete && wall_now_ - known.stamp.changed_at > stamp_resolution;
 }
 
 /// Reads the names in a folder. Returns true if all names were read. Returns false after an error.
-bool Recordings::read_names(Descriptor folder, const Choice& choice, std::vector<std::string>& names) {
+bool Recordings::read_names(Descriptor folder, const NameSelection& selection,
+                            std::vector<std::string>& names) {
   ++folders_read_;
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::fdopendir(folder.get()), &::closedir);
   if (!entries) return false;
@@ -130,13 +131,13 @@ bool Recordings::read_names(Descriptor folder, const Choice& choice, std::vector
   std::size_t count = 0;
   errno = 0;
   while (const dirent* const entry = ::readdir(entries.get())) {
-    if (choice.is_wanted(entry->d_name)) names.emplace_back(entry->d_name);
-    if (names.size() >= 2 * choice.most) keep_first(names, choice.last_first, choice.most);
-    if (++count % entries_at_once == 0) pause();
+    if (selection.is_wanted(entry->d_name)) names.emplace_back(entry->d_name);
+    if (names.size() >= 2 * selection.most) keep_first(names, selection.last_first, selection.most);
+    if (++count % entries_at_once == 0) call_on_interval();
     errno = 0;
   }
   const bool complete = errno == 0;
-  keep_first(names, choice.last_first, choice.most);
+  keep_first(names, selection.last_first, selection.most);
   return complete;
 }
 

@@ -45,8 +45,9 @@ class Recordings {
   /// shown. Reads only the folders that have changed since the last call.
   /// @param wall_now  the result of wall_time_now(). A folder that changed just before this time is read
   /// again by the next call, because its time stamp may not show a second change.
-  /// @param between   is called between the folders; may be empty.
-  [[nodiscard]] nlohmann::ordered_json list(Nanoseconds wall_now, const std::function<void()>& between = {});
+  /// @param on_interval   is called between the folders; may be empty.
+  [[nodiscard]] nlohmann::ordered_json list(Nanoseconds wall_now,
+                                            const std::function<void()>& on_interval = {});
   /// Opens a file of a recording. Returns nullopt if the file does not exist or may not be shown. Follows no
   /// links.
   [[nodiscard]] std::optional<RegularFile> open(std::string_view recording, std::string_view file) const;
@@ -63,28 +64,29 @@ class Recordings {
   };
   struct Names {
     Stamp stamp;
-    bool settled = false;  // true: any change of the folder after this stamp changes the folder's time stamp
+    bool stamp_reliable =
+        false;  // true: any change of the folder after this stamp changes the folder's time stamp
     std::vector<std::string> names;
   };
   /// Determines which names of a folder are stored, and in which order.
-  struct Choice {
+  struct NameSelection {
     bool (*is_wanted)(std::string_view name) = nullptr;
     bool last_first = false;
     std::size_t most = 0;
   };
 
-  void bring_up_to_date(Names& known, const Descriptor& parent, const std::string& name,
-                        const Choice& choice);
-  bool read_names(Descriptor folder, const Choice& choice, std::vector<std::string>& names);
-  void pause() const {
-    if (between_) between_();
+  void refresh(Names& known, const Descriptor& parent, const std::string& name,
+               const NameSelection& selection);
+  bool read_names(Descriptor folder, const NameSelection& selection, std::vector<std::string>& names);
+  void call_on_interval() const {
+    if (on_interval_) on_interval_();
   }
 
   std::string folder_;
   Names newest_;                        // names of the recordings, newest first
   std::map<std::string, Names> files_;  // names of the files that may be shown, by name of the recording
   Nanoseconds wall_now_ = 0;            // time at which the list that is being created was requested
-  std::function<void()> between_;
+  std::function<void()> on_interval_;
   std::size_t folders_read_ = 0;
 };
 

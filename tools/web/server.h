@@ -14,8 +14,8 @@
 #include "tools/web/archive.h"
 #include "tools/web/client.h"
 #include "tools/web/commander.h"
+#include "tools/web/connection_limits.h"
 #include "tools/web/daemon_watch.h"
-#include "tools/web/places.h"
 #include "tools/web/site.h"
 
 namespace softgrip::web {
@@ -33,68 +33,68 @@ class Server {
   struct Download {
     std::shared_ptr<const RegularFile> file;
     std::size_t read = 0;                   // number of bytes of the file that have been read so far
-    std::shared_ptr<const DiskTask> piece;  // the next piece of the file, which is being read from the disk;
-                                            // null: no piece is being read
+    std::shared_ptr<const DiskTask> chunk;  // the next chunk of the file, which is being read from the disk;
+                                            // null: no chunk is being read
   };
-  struct Visitor {
+  struct Connection {
     Client client;
-    Role role = Role::none;     // role of the visitor that sent the request
-    Follower follower;          // reader of the stream; used in the phase `following`
-    Download download;          // file that is being sent; used in the phase `loading`
-    std::uint64_t command = 0;  // number of the command that was sent to the daemon; 0: no command was sent
+    Role role = Role::none;      // role of the client that sent the request
+    StreamReader stream_reader;  // reader of the stream; used in the phase `streaming`
+    Download download;           // file that is being sent; used in the phase `sending_file`
+    std::uint64_t command = 0;   // number of the command that was sent to the daemon; 0: no command was sent
     std::shared_ptr<const DiskTask> task;  // pending request to the disk
-    Nanoseconds gives_up_at = 0;           // time at which the wait for the disk ends without a result
-    bool leaves = false;                   // true: the visitor is removed at the end of this cycle
-    net::PollSet::Place place = {};
+    Nanoseconds deadline = 0;              // time at which the wait for the disk ends without a result
+    bool closing = false;                  // true: the connection is removed at the end of this cycle
+    net::PollSet::Place poll_entry = {};
   };
-  /// The visitors that are not marked for removal, with the properties that determine which visitor is
+  /// The connections that are not marked for removal, with the properties that determine which connection is
   /// removed next.
-  struct Crowd {
-    std::vector<Guest> guests;
-    std::vector<Visitor*> visitors;
+  struct Candidates {
+    std::vector<ConnectionInfo> infos;
+    std::vector<Connection*> connections;
   };
 
   void serve_until_signal();
-  /// Closes the newest visitors if the process may now have fewer descriptors than before.
-  [[nodiscard]] bool give_up_places();
+  /// Closes the newest connections if the process may now have fewer descriptors than before.
+  [[nodiscard]] bool reduce_connection_limit();
   void accept(Nanoseconds now);
-  void look_after(Visitor& visitor, net::PollSet::Events events, Nanoseconds now);
-  void serve(Visitor& visitor, Nanoseconds now);
-  void ask_disk(Visitor& visitor, DiskRequest disk_request, Nanoseconds now);
-  void answer(Visitor& visitor, Outcome outcome, Nanoseconds now);
-  void refuse(Visitor& visitor, int status, Nanoseconds now);
-  void take_reply(Visitor& visitor, Nanoseconds now);
-  static void take_piece(Visitor& visitor);
-  void ask_for_piece(Visitor& visitor);
-  [[nodiscard]] bool still_may(const Follower& follower, Nanoseconds now);
+  void process_events(Connection& connection, net::PollSet::Events events, Nanoseconds now);
+  void serve(Connection& connection, Nanoseconds now);
+  void request_disk(Connection& connection, DiskRequest disk_request, Nanoseconds now);
+  void respond(Connection& connection, Outcome outcome, Nanoseconds now);
+  void send_error(Connection& connection, int status, Nanoseconds now);
+  void process_reply(Connection& connection, Nanoseconds now);
+  static void process_chunk(Connection& connection);
+  void request_chunk(Connection& connection);
+  [[nodiscard]] bool has_same_role(const StreamReader& stream_reader, Nanoseconds now);
   /// Sends the latest messages to every open stream whose reader is still authorised.
-  void tell_news(Nanoseconds now);
-  void remove_leaving();
-  void turn_away(Visitor& visitor);
-  void count();
+  void send_messages(Nanoseconds now);
+  void remove_closing();
+  void evict(Connection& connection);
+  void update_counts();
 
-  [[nodiscard]] static Guest guest_of(const Visitor& visitor);
-  [[nodiscard]] Crowd crowd_beside(const Visitor* visitor);
+  [[nodiscard]] static ConnectionInfo info_of(const Connection& connection);
+  [[nodiscard]] Candidates candidates_except(const Connection* connection);
   /// Returns true if there is space for one more connection. May close another connection to make space.
-  [[nodiscard]] bool make_place(Nanoseconds now);
-  [[nodiscard]] bool make_lingering_place(const Visitor& visitor, Nanoseconds now);
+  [[nodiscard]] bool make_room_for_connection(Nanoseconds now);
+  [[nodiscard]] bool make_room_for_long_lived(const Connection& connection, Nanoseconds now);
   /// Returns true if the unsent bytes of all connections are within their limit. May close other connections
   /// to meet the limit.
-  [[nodiscard]] bool make_room(const Visitor* visitor, Role role);
+  [[nodiscard]] bool make_room_for_bytes(const Connection* connection, Role role);
 
   const Settings& settings_;
-  std::size_t places_;
+  std::size_t max_connections_;
   LiveState state_;
-  OwnCounts counts_;
+  ServerCounts counts_;
   Gate gate_;
   Site site_;
   DaemonWatch watch_;
   Commander commander_;
   Archive archive_;
-  net::Entrance entrance_;
+  net::Entrance listener_;
   Descriptor signals_;
   MonotonicClock clock_;
-  std::list<Visitor> visitors_;
+  std::list<Connection> connections_;
   Nanoseconds checked_at_ = 0;  // time at which the roles of the stream readers were last checked
 };
 

@@ -20,7 +20,7 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr const char* json_type = "application/json";
-constexpr const char* disk_is_silent = "the disk with the recordings does not respond";
+constexpr const char* disk_timeout_message = "the disk with the recordings does not respond";
 /// Content-Security-Policy of the page. The page may load files from this server only, and it may not submit
 /// forms. Other sites cannot embed the page in a frame.
 constexpr const char* page_policy =
@@ -70,7 +70,7 @@ std::string_view name_of(Role role) noexcept {
   return role_names[role];
 }
 
-Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
+Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const ServerCounts& counts,
            std::string chart_js)
     : settings_(settings), gate_(gate), state_(state), counts_(counts), chart_js_(std::move(chart_js)) {
   engine_.set_default_headers({{"Cache-Control", "no-store"},
@@ -81,8 +81,8 @@ Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const O
                                {"X-Content-Type-Options", "nosniff"},
                                {"X-Frame-Options", "DENY"}});
   engine_.set_pre_routing_handler([this](const Request& request, Response& response) {
-    return turn_away(request, response) ? httplib::Server::HandlerResponse::Handled
-                                        : httplib::Server::HandlerResponse::Unhandled;
+    return reject(request, response) ? httplib::Server::HandlerResponse::Handled
+                                     : httplib::Server::HandlerResponse::Unhandled;
   });
   engine_.set_error_handler([](const Request&, Response& response) {
     if (response.body.empty()) put_error(response, response.status, "not found");
@@ -105,20 +105,20 @@ Outcome Site::serve(std::string_view request, Nanoseconds now, const Reply& repl
   outcome_.bytes = engine_.answer(request);
   outcome_.status = status_in(outcome_.bytes);
   outcome_.role = role_;
-  if (outcome_.follower) outcome_.bytes += state_.greeting();
+  if (outcome_.stream_reader) outcome_.bytes += state_.snapshot_message();
   return std::move(outcome_);
 }
 
-std::string Site::refusal(int status) {
+std::string Site::error_response(int status) {
   return fmt::format("HTTP/1.1 {} Refused\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status);
 }
 
-bool Site::turn_away(const Request& request, Response& response) {
+bool Site::reject(const Request& request, Response& response) {
   credentials_ = {request.get_header_value("Host"), request.get_header_value("Origin"),
                   request.get_header_value("Sec-Fetch-Site"), request.get_header_value("Cookie"),
                   request.get_header_value("Authorization")};
   const bool changes = request.method != "GET" && request.method != "HEAD";
-  const auto role = gate_.admit(credentials_, changes, now_);
+  const auto role = gate_.authorize(credentials_, changes, now_);
   if (!role) {
     put_error(response, role.error().status, role.error().message);
     return true;
@@ -127,7 +127,7 @@ bool Site::turn_away(const Request& request, Response& response) {
   return false;
 }
 
-bool Site::need(Role role, Response& response) const {
+bool Site::require_role(Role role, Response& response) const {
   if (role_ >= role) return true;
   if (role_ == Role::none) {
     response.set_header("WWW-Authenticate", "Bearer");
@@ -158,13 +158,13 @@ void Site::add_page() {
 }
 
 void Site::add_sessions() {
-  const auto tell = [this](const Request&, Response& response) {
+  const auto describe_session = [this](const Request&, Response& response) {
     put_json(response, {{"role", name_of(role_)},
                         {"tokens", gate_.has_tokens()},
                         {"byToken", role_ > settings_.without_token},
                         {"commands", !settings_.operate_socket.empty()}});
   };
-  engine_.Get("/api/session", tell);
+  engine_.Get("/api/session", describe_session);
   engine_.Post("/api/session", [this](const Request& request, Response& response) {
     const Json body = Json::parse(request.body, nullptr, false);
     if (!body.is_object() || !body.contains("token") || !body["token"].is_string())
@@ -185,7 +185,7 @@ void Site::add_sessions() {
 
 void Site::add_data() {
   engine_.Get("/metrics", [this](const Request&, Response& response) {
-    if (!need(Role::look, response)) return;
+    if (!require_role(Role::look, response)) return;
     if (reply_.disk == nullptr && !settings_.recordings.empty()) {
       outcome_.disk_request = DiskRequest{.kind = DiskRequest::Kind::health};
     } else {
@@ -193,39 +193,39 @@ void Site::add_data() {
     }
   });
   engine_.Get("/api/status", [this](const Request&, Response& response) {
-    if (!need(Role::look, response)) return;
+    if (!require_role(Role::look, response)) return;
     if (state_.status().is_null()) return put_error(response, 503, "softgripd does not respond");
     put_json(response, state_.status());
   });
-  engine_.Get("/api/stream", [this](const Request&, Response& response) { greet(response); });
+  engine_.Get("/api/stream", [this](const Request&, Response& response) { begin_stream(response); });
 }
 
 /// Begins a stream of messages. The library writes the head of the response, which contains no length. The
 /// owner of the connection adds the messages.
-void Site::greet(Response& response) {
-  if (!need(Role::look, response)) return;
-  outcome_.follower = Follower{credentials_, role_};
+void Site::begin_stream(Response& response) {
+  if (!require_role(Role::look, response)) return;
+  outcome_.stream_reader = StreamReader{credentials_, role_};
   response.set_content_provider("text/event-stream", [](std::size_t, httplib::DataSink&) { return false; });
 }
 
 std::string Site::metrics() const {
   MetricText metrics;
-  tell_daemon(state_.status(), state_.statistics(), metrics);
-  tell_health(state_.health(), metrics);
+  add_daemon_metrics(state_.status(), state_.statistics(), metrics);
+  add_health_metrics(state_.health(), metrics);
   using enum MetricText::Type;
   metrics.family("softgrip_web_connections", gauge,
                  "Number of open connections of browsers and metrics collectors.");
   metrics.sample(static_cast<double>(counts_.connections));
   metrics.family("softgrip_web_pages", gauge, "Open pages.");
-  metrics.sample(static_cast<double>(counts_.followers));
+  metrics.sample(static_cast<double>(counts_.streams));
   metrics.family("softgrip_web_unsent_bytes", gauge,
                  "Number of bytes in responses that clients have not read yet.");
   metrics.sample(static_cast<double>(counts_.unsent));
   metrics.family("softgrip_web_turned_away_total", counter,
                  "Number of connections that were refused, or that were closed to allow new connections.");
-  metrics.sample(static_cast<double>(counts_.turned_away));
+  metrics.sample(static_cast<double>(counts_.rejected));
   metrics.family("softgrip_web_answers_total", counter, "HTTP responses, by status.");
-  for (const auto& [status, count] : counts_.answers)
+  for (const auto& [status, count] : counts_.responses)
     metrics.sample({{"status", std::to_string(status)}}, static_cast<double>(count));
   return metrics.text();
 }
@@ -237,11 +237,11 @@ void Site::add_recordings() {
 }
 
 void Site::list(Response& response) {
-  if (!need(Role::look, response)) return;
+  if (!require_role(Role::look, response)) return;
   if (reply_.disk == nullptr) {
     outcome_.disk_request = DiskRequest{.kind = DiskRequest::Kind::listing};
   } else if (!reply_.disk->done()) {
-    put_error(response, 503, disk_is_silent);
+    put_error(response, 503, disk_timeout_message);
   } else {
     response.set_content(reply_.disk->text(), json_type);
   }
@@ -250,14 +250,14 @@ void Site::list(Response& response) {
 /// Begins the response with a file. The library writes the head of the response. The content of the file is
 /// sent in pieces and is never in memory completely.
 void Site::show(const Request& request, Response& response) {
-  if (!need(Role::look, response)) return;
+  if (!require_role(Role::look, response)) return;
   const std::string name = request.matches[2];
   if (reply_.disk == nullptr) {
     outcome_.disk_request =
         DiskRequest{.kind = DiskRequest::Kind::file, .recording = request.matches[1], .name = name};
     return;
   }
-  if (!reply_.disk->done()) return put_error(response, 503, disk_is_silent);
+  if (!reply_.disk->done()) return put_error(response, 503, disk_timeout_message);
   const auto& file = reply_.disk->file();
   if (!file)
     return put_error(response, 404, "the file does not exist, or files of this kind cannot be shown");
@@ -275,7 +275,7 @@ void Site::add_commands() {
 }
 
 void Site::command(const Request& request, Response& response) {
-  if (!need(Role::operate, response)) return;
+  if (!require_role(Role::operate, response)) return;
   if (!request.get_header_value("Content-Type").starts_with(json_type))
     return put_error(response, 415, "the Content-Type must be application/json");
   auto command = command_in(request.body);
@@ -288,9 +288,9 @@ void Site::command(const Request& request, Response& response) {
   if (answer.value("ok", false)) return put_json(response, answer.value("result", Json::object()));
   const Json& error = answer.contains("error") ? answer["error"] : answer;
   const std::string code = error.value("code", "");
-  const bool gone = code == "no_daemon" || code == "no_answer";
+  const bool unreachable = code == "no_daemon" || code == "no_answer";
   put_json(response, {{"error", error.value("message", "")}, {"code", code}, {"details", error}},
-           gone ? 503 : 409);
+           unreachable ? 503 : 409);
 }
 
 }  // namespace softgrip::web

@@ -20,17 +20,17 @@
 namespace softgrip::web {
 
 /// Counters of the program softgrip-web. Its metrics contain these counters.
-struct OwnCounts {
+struct ServerCounts {
   std::size_t connections = 0;
-  std::size_t followers = 0;             ///< number of connections that belong to open pages
-  std::size_t unsent = 0;                ///< number of bytes that wait to be sent
-  std::uint64_t turned_away = 0;         ///< number of connections that were closed or refused because a
-                                         ///< limit was reached
-  std::map<int, std::uint64_t> answers;  ///< number of responses, by HTTP status
+  std::size_t streams = 0;                 ///< number of connections that belong to open pages
+  std::size_t unsent = 0;                  ///< number of bytes that wait to be sent
+  std::uint64_t rejected = 0;              ///< number of connections that were closed or refused because a
+                                           ///< limit was reached
+  std::map<int, std::uint64_t> responses;  ///< number of responses, by HTTP status
 };
 
 /// A client that reads a stream of messages.
-struct Follower {
+struct StreamReader {
   Credentials credentials;
   Role role = Role::none;
 };
@@ -42,7 +42,7 @@ struct Outcome {
   Role role = Role::none;  ///< role of the client that sent the request
   /// Set if the bytes begin a stream of messages. The stream continues while its reader has the role that it
   /// had when the stream began.
-  std::optional<Follower> follower;
+  std::optional<StreamReader> stream_reader;
   /// Set if the content of this file must be sent after `bytes`.
   std::shared_ptr<const RegularFile> file;
   /// Set if this command must be sent to the daemon before there is a response to the client. After the
@@ -64,14 +64,14 @@ class Site {
  public:
   /// Creates the site. All references must outlive the site. `chart_js` is the text of the library that draws
   /// curves; empty if the library is not installed.
-  Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
+  Site(const Settings& settings, Gate& gate, const LiveState& state, const ServerCounts& counts,
        std::string chart_js);
 
   /// Returns the result of processing a request. `request` must be complete according to frame_of().
   [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now, const Reply& reply = {});
   /// Returns the refusal for a request that frame_of() refused, or for a client for which there is no free
   /// connection.
-  [[nodiscard]] static std::string refusal(int status);
+  [[nodiscard]] static std::string error_response(int status);
 
  private:
   void add_page();
@@ -81,10 +81,10 @@ class Site {
   void add_commands();
   /// Checks the sender of a request before its handler is called. If the request is refused, writes the
   /// refusal into `response` and returns true.
-  bool turn_away(const httplib::Request& request, httplib::Response& response);
+  bool reject(const httplib::Request& request, httplib::Response& response);
   /// Returns true if the sender has at least the role `role`. Otherwise writes the refusal into `response`.
-  bool need(Role role, httplib::Response& response) const;
-  void greet(httplib::Response& response);
+  bool require_role(Role role, httplib::Response& response) const;
+  void begin_stream(httplib::Response& response);
   void command(const httplib::Request& request, httplib::Response& response);
   void list(httplib::Response& response);
   void show(const httplib::Request& request, httplib::Response& response);
@@ -93,7 +93,7 @@ class Site {
   const Settings& settings_;
   Gate& gate_;
   const LiveState& state_;
-  const OwnCounts& counts_;
+  const ServerCounts& counts_;
   std::string chart_js_;
   HttpEngine engine_;
   // Time at which the current request was received.

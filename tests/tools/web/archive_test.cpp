@@ -29,7 +29,7 @@ class ArchiveTest : public ::testing::Test {
   ArchiveTest& operator=(ArchiveTest&&) = delete;
 
   std::shared_ptr<const DiskTask> done(DiskRequest disk_request) {
-    auto task = archive_.ask(std::move(disk_request));
+    auto task = archive_.submit(std::move(disk_request));
     wait_for(*task);
     return task;
   }
@@ -37,11 +37,12 @@ class ArchiveTest : public ::testing::Test {
     pollfd watched{archive_.descriptor(), POLLIN, 0};
     while (!task.done()) {
       ASSERT_EQ(::poll(&watched, 1, 30'000), 1) << "the archive has not signalled an answer";
-      archive_.hear();
+      archive_.clear_event();
     }
   }
 
-  std::string contents_ = std::string(Archive::piece, 'a') + std::string(Archive::piece, 'b') + "end";
+  std::string contents_ =
+      std::string(Archive::chunk_size, 'a') + std::string(Archive::chunk_size, 'b') + "end";
   fs::path folder_ = fs::temp_directory_path() / ("archive_" + std::to_string(::getpid()));
   Archive archive_{folder_};
 };
@@ -53,13 +54,13 @@ TEST_F(ArchiveTest, ListsOpensAndReadsRecordings) {
   ASSERT_TRUE(file);
   EXPECT_EQ(file->size, contents_.size());
   std::string bytes;
-  for (int pieces = 0; pieces < 3; ++pieces) {
-    const auto piece = done({.kind = DiskRequest::Kind::piece, .from = file});
-    EXPECT_LE(piece->text().size(), Archive::piece);
-    bytes += piece->text();
+  for (int chunks = 0; chunks < 3; ++chunks) {
+    const auto chunk = done({.kind = DiskRequest::Kind::chunk, .from = file});
+    EXPECT_LE(chunk->text().size(), Archive::chunk_size);
+    bytes += chunk->text();
   }
   EXPECT_EQ(bytes, contents_);
-  EXPECT_TRUE(done({.kind = DiskRequest::Kind::piece, .from = file})->text().empty());
+  EXPECT_TRUE(done({.kind = DiskRequest::Kind::chunk, .from = file})->text().empty());
   EXPECT_FALSE(done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "none.csv"})->file());
 }
 
@@ -80,11 +81,11 @@ TEST_F(ArchiveTest, AListIsNotOlderThanTheRequest) {
 }
 
 TEST_F(ArchiveTest, SimultaneousRequestsShareOneList) {
-  std::vector<std::shared_ptr<const DiskTask>> asked;
-  for (int i = 0; i < 1000; ++i) asked.push_back(archive_.ask({.kind = DiskRequest::Kind::listing}));
+  std::vector<std::shared_ptr<const DiskTask>> tasks;
+  for (int i = 0; i < 1000; ++i) tasks.push_back(archive_.submit({.kind = DiskRequest::Kind::listing}));
   std::size_t lists = 0;
   const std::string* last = nullptr;
-  for (const auto& task : asked) {
+  for (const auto& task : tasks) {
     wait_for(*task);
     if (&task->text() != last) ++lists;
     last = &task->text();
@@ -94,8 +95,9 @@ TEST_F(ArchiveTest, SimultaneousRequestsShareOneList) {
 
 TEST_F(ArchiveTest, AbandonedTasksDoNotBlockALaterTask) {
   for (int i = 0; i < 1000; ++i) {
-    static_cast<void>(archive_.ask({.kind = DiskRequest::Kind::listing}));
-    static_cast<void>(archive_.ask({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"}));
+    static_cast<void>(archive_.submit({.kind = DiskRequest::Kind::listing}));
+    static_cast<void>(
+        archive_.submit({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"}));
   }
   EXPECT_TRUE(done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"})->file());
 }
@@ -104,7 +106,7 @@ TEST_F(ArchiveTest, EndsWithPendingTasks) {
   std::shared_ptr<const DiskTask> open;
   {
     Archive other(folder_);
-    for (int i = 0; i < 100; ++i) open = other.ask({.kind = DiskRequest::Kind::listing});
+    for (int i = 0; i < 100; ++i) open = other.submit({.kind = DiskRequest::Kind::listing});
   }
   EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing)
       << "the task must remain valid, but it may end without an answer";

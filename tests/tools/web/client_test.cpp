@@ -29,10 +29,10 @@ class ClientTest : public ::testing::Test {
   }
   explicit ClientTest(std::pair<Descriptor, Descriptor> ends = connected())
       : client_(std::move(ends.first), 0), other_(std::move(ends.second)) {}
-  void say(const std::string& text) {
+  void send_text(const std::string& text) {
     ASSERT_EQ(::send(other_.get(), text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
   }
-  std::string heard() {
+  std::string received() {
     std::string text(1U << 21U, '\0');
     const ssize_t count = ::recv(other_.get(), text.data(), text.size(), 0);
     text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
@@ -44,43 +44,43 @@ class ClientTest : public ::testing::Test {
 };
 
 TEST_F(ClientTest, AssemblesARequestFromPiecesAndSendsTheResponse) {
-  say("GET / ");
+  send_text("GET / ");
   EXPECT_TRUE(client_.receive());
-  say("HTTP/1.1\r\n\r\n");
+  send_text("HTTP/1.1\r\n\r\n");
   EXPECT_TRUE(client_.receive());
   EXPECT_EQ(client_.request(), "GET / HTTP/1.1\r\n\r\n");
-  client_.answer("good", Phase::answering, 1);
-  EXPECT_FALSE(client_.send_on(1)) << "all bytes have been sent";
-  EXPECT_EQ(heard(), "good");
+  client_.respond("good", Phase::responding, 1);
+  EXPECT_FALSE(client_.send_pending(1)) << "all bytes have been sent";
+  EXPECT_EQ(received(), "good");
 }
 
 TEST_F(ClientTest, DetectsAClosedConnection) {
-  client_.answer("hello", Phase::following, 0);
+  client_.respond("hello", Phase::streaming, 0);
   other_.reset();
   EXPECT_FALSE(client_.receive());
 }
 
 TEST_F(ClientTest, AHalfClosedConnectionStillReceivesTheResponse) {
-  say("GET / HTTP/1.1\r\n\r\n");
+  send_text("GET / HTTP/1.1\r\n\r\n");
   ASSERT_EQ(::shutdown(other_.get(), SHUT_WR), 0);
   EXPECT_TRUE(client_.receive());
   client_.wait();
   EXPECT_TRUE(client_.receive());
-  EXPECT_TRUE(client_.said_all());
-  client_.answer("good", Phase::answering, 1);
-  EXPECT_FALSE(client_.send_on(1));
-  EXPECT_EQ(heard(), "good");
+  EXPECT_TRUE(client_.input_closed());
+  client_.respond("good", Phase::responding, 1);
+  EXPECT_FALSE(client_.send_pending(1));
+  EXPECT_EQ(received(), "good");
   EXPECT_FALSE(client_.receive()) << "if a read ends without data a second time, the connection is broken";
 }
 
 TEST_F(ClientTest, ReceivesALimitedNumberOfBytesPerCycle) {
   const int large = 1 << 22;
   ::setsockopt(other_.get(), SOL_SOCKET, SO_SNDBUF, &large, sizeof large);
-  std::size_t said = 0;
+  std::size_t sent = 0;
   const std::string flood(4096, 'x');
   for (ssize_t count = 0; (count = ::send(other_.get(), flood.data(), flood.size(), 0)) > 0;)
-    said += static_cast<std::size_t>(count);
-  ASSERT_GT(said, 100'000U);
+    sent += static_cast<std::size_t>(count);
+  ASSERT_GT(sent, 100'000U);
   EXPECT_TRUE(client_.receive());
   int left = 0;
   ASSERT_EQ(::ioctl(client_.descriptor(), FIONREAD, &left), 0);
@@ -88,78 +88,78 @@ TEST_F(ClientTest, ReceivesALimitedNumberOfBytesPerCycle) {
 }
 
 TEST_F(ClientTest, AFileIsSentInPieces) {
-  client_.answer("head", Phase::loading, 0);
-  EXPECT_TRUE(client_.send_on(0)) << "more pieces follow";
-  EXPECT_FALSE(client_.has_to_send());
+  client_.respond("head", Phase::sending_file, 0);
+  EXPECT_TRUE(client_.send_pending(0)) << "more pieces follow";
+  EXPECT_FALSE(client_.has_unsent());
   EXPECT_TRUE(client_.add("-one"));
-  EXPECT_TRUE(client_.send_on(0));
-  EXPECT_TRUE(client_.late(Client::longest_pause + 1))
+  EXPECT_TRUE(client_.send_pending(0));
+  EXPECT_TRUE(client_.timed_out(Client::stall_timeout + 1))
       << "the time limit includes the wait for a disk that does not respond";
   EXPECT_TRUE(client_.add("-two"));
   client_.finish();
-  EXPECT_FALSE(client_.send_on(0));
-  EXPECT_EQ(heard(), "head-one-two");
+  EXPECT_FALSE(client_.send_pending(0));
+  EXPECT_EQ(received(), "head-one-two");
 }
 
 TEST_F(ClientTest, SendsALimitedNumberOfBytesPerCycle) {
   const int large = 1 << 22;
   ::setsockopt(client_.descriptor(), SOL_SOCKET, SO_SNDBUF, &large, sizeof large);
-  client_.answer(std::string(2 * Client::most_at_once, 'x'), Phase::answering, 0);
-  EXPECT_TRUE(client_.send_on(0));
-  EXPECT_GE(client_.unsent(), Client::most_at_once);
+  client_.respond(std::string(2 * Client::max_per_send, 'x'), Phase::responding, 0);
+  EXPECT_TRUE(client_.send_pending(0));
+  EXPECT_GE(client_.unsent(), Client::max_per_send);
 }
 
 TEST_F(ClientTest, LimitsTheStoredBytesOfARequest) {
   for (int i = 0; i < 100; ++i) {
-    say(std::string(4000, 'x'));
+    send_text(std::string(4000, 'x'));
     EXPECT_TRUE(client_.receive());
   }
   EXPECT_LT(client_.request().size(), 40000U);
 }
 
 TEST_F(ClientTest, ASlowClientExceedsTheTimeLimit) {
-  EXPECT_FALSE(client_.late(Client::longest_question));
-  EXPECT_TRUE(client_.late(Client::longest_question + 1));
+  EXPECT_FALSE(client_.timed_out(Client::request_timeout));
+  EXPECT_TRUE(client_.timed_out(Client::request_timeout + 1));
   client_.wait();
   EXPECT_EQ(client_.phase(), Phase::waiting);
-  EXPECT_FALSE(client_.late(100 * ns_per_s))
+  EXPECT_FALSE(client_.timed_out(100 * ns_per_s))
       << "the time in which the client waits for the daemon must not count";
-  client_.answer(std::string(1U << 22U, 'x'), Phase::answering, 0);
-  EXPECT_TRUE(client_.send_on(0));
-  EXPECT_TRUE(client_.has_to_send());
-  EXPECT_TRUE(client_.late(Client::longest_pause + 1));
+  client_.respond(std::string(1U << 22U, 'x'), Phase::responding, 0);
+  EXPECT_TRUE(client_.send_pending(0));
+  EXPECT_TRUE(client_.has_unsent());
+  EXPECT_TRUE(client_.timed_out(Client::stall_timeout + 1));
 }
 
 TEST_F(ClientTest, AClientThatReadsSlowlyExceedsTheTotalTimeLimit) {
-  client_.answer(std::string(1U << 24U, 'x'), Phase::answering, 0);
+  client_.respond(std::string(1U << 24U, 'x'), Phase::responding, 0);
   Nanoseconds now = 0;
-  for (; !client_.late(now) && now < 200 * ns_per_s; now += ns_per_s) {
-    ASSERT_TRUE(client_.send_on(now));
+  for (; !client_.timed_out(now) && now < 200 * ns_per_s; now += ns_per_s) {
+    ASSERT_TRUE(client_.send_pending(now));
     std::string little(100'000, '\0');
     EXPECT_GT(::recv(other_.get(), little.data(), little.size(), 0), 0);
   }
-  EXPECT_GT(now, Client::longest_pause)
+  EXPECT_GT(now, Client::stall_timeout)
       << "the client reads some data, so the limit for a pause must not apply";
-  EXPECT_LE(now, Client::longest_answer + 2 * ns_per_s);
+  EXPECT_LE(now, Client::response_timeout + 2 * ns_per_s);
 }
 
 TEST_F(ClientTest, LimitsTheUnreadBytesOfAStream) {
-  client_.answer("hello", Phase::following, 0);
-  EXPECT_EQ(client_.phase(), Phase::following);
-  EXPECT_TRUE(client_.send_on(0));
+  client_.respond("hello", Phase::streaming, 0);
+  EXPECT_EQ(client_.phase(), Phase::streaming);
+  EXPECT_TRUE(client_.send_pending(0));
   const std::string message(10000, 'm');
-  int kept = 0;
-  for (; kept < 1000 && client_.add(message); ++kept) EXPECT_TRUE(client_.send_on(0));
-  EXPECT_LT(kept, 200) << "the client must not keep more than the buffer of the socket and 1 MB";
-  EXPECT_TRUE(client_.late(Client::longest_pause + 1));
+  int buffered = 0;
+  for (; buffered < 1000 && client_.add(message); ++buffered) EXPECT_TRUE(client_.send_pending(0));
+  EXPECT_LT(buffered, 200) << "the client must not keep more than the buffer of the socket and 1 MB";
+  EXPECT_TRUE(client_.timed_out(Client::stall_timeout + 1));
 }
 
 TEST_F(ClientTest, AStreamEndsAfterAllPendingBytesAreSent) {
-  client_.answer("hello", Phase::following, 0);
+  client_.respond("hello", Phase::streaming, 0);
   client_.finish();
   EXPECT_TRUE(client_.add("!"));
-  EXPECT_FALSE(client_.send_on(0));
-  EXPECT_EQ(heard(), "hello!");
+  EXPECT_FALSE(client_.send_pending(0));
+  EXPECT_EQ(received(), "hello!");
 }
 
 using State = Frame::State;

@@ -47,8 +47,8 @@ TEST(Commander, RefusesACommandWithoutADaemonOrASocket) {
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error()["error"]["code"], "no_daemon");
   const std::string none;
-  Commander looking(none);
-  EXPECT_EQ(looking.send({{"command", "stop"}}, 0).error()["error"]["code"], "not_allowed");
+  Commander read_only(none);
+  EXPECT_EQ(read_only.send({{"command", "stop"}}, 0).error()["error"]["code"], "not_allowed");
 }
 
 TEST(Commander, PendingStartsDoNotBlockAStopOrAVent) {
@@ -63,12 +63,12 @@ TEST(Commander, PendingStartsDoNotBlockAStopOrAVent) {
   for (const char* urgent : {"stop", "vent"}) {
     const auto sent = commander.send({{"command", urgent}}, 0);
     ASSERT_TRUE(sent) << sent.error();
-    commander.forget(*sent);
+    commander.abandon(*sent);
   }
-  for (std::size_t i = 0; i < Commander::most_waiting; ++i) {
+  for (std::size_t i = 0; i < Commander::max_pending; ++i) {
     const auto sent = commander.send({{"command", "stop"}}, 0);
     ASSERT_TRUE(sent) << i;
-    commander.forget(*sent);
+    commander.abandon(*sent);
   }
   ::unlink(path.c_str());
 }
@@ -81,11 +81,11 @@ TEST(Commander, ReportsADaemonThatDoesNotReply) {
   bool ended = false;
   for (int i = 0; i < 5000 && !ended; ++i) {
     const auto sent = commander.send({{"command", "stop"}}, 0);
-    commander.look_after(0);
+    commander.update(0);
     // If the daemon does not accept a request, the commander must produce an error response itself.
-    const auto answer = sent ? commander.take_answer(*sent, 0) : std::nullopt;
-    ended = answer && (*answer)["error"]["code"] == "no_answer";
-    if (sent && !answer) commander.forget(*sent);
+    const auto response = sent ? commander.take_response(*sent, 0) : std::nullopt;
+    ended = response && (*response)["error"]["code"] == "no_answer";
+    if (sent && !response) commander.abandon(*sent);
   }
   EXPECT_TRUE(ended);
   ::unlink(path.c_str());
@@ -107,7 +107,7 @@ class CommanderTest : public ::testing::Test {
     return sent.value_or(0);
   }
   /// Returns the requests that have arrived at the daemon since the last call. Omits hello requests.
-  std::vector<Json> heard() {
+  std::vector<Json> received() {
     while (Descriptor next = net::accept_client(listener_)) client_ = std::move(next);
     std::string text;
     std::array<char, 4096> buffer{};
@@ -127,15 +127,15 @@ class CommanderTest : public ::testing::Test {
     const std::string line = rest.dump() + "\n";
     ASSERT_EQ(::send(client_.get(), line.data(), line.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(line.size()));
-    commander_.look_after(now_);
+    commander_.update(now_);
   }
   void pass(double duration_s) {
     now_ += static_cast<Nanoseconds>(duration_s * static_cast<double>(ns_per_s));
-    commander_.look_after(now_);
+    commander_.update(now_);
   }
   /// Checks that exactly one new request has arrived and that it stops this start. Returns the new request.
   Json expect_stop_of(const Json& start) {
-    const std::vector<Json> lines = heard();
+    const std::vector<Json> lines = received();
     EXPECT_EQ(lines.size(), 1U);
     if (lines.size() != 1) return {};
     EXPECT_EQ(lines[0]["command"], "stop");
@@ -145,7 +145,7 @@ class CommanderTest : public ::testing::Test {
   void expect_no_stop_any_more() {
     for (int i = 0; i < 10; ++i) {
       pass(1);
-      EXPECT_TRUE(heard().empty());
+      EXPECT_TRUE(received().empty());
     }
   }
 
@@ -163,7 +163,7 @@ TEST_F(CommanderTest, OnlyStartsHaveAUniqueStartId) {
   start();
   start();
   EXPECT_TRUE(commander_.send({{"command", "stop"}}, now_));
-  const std::vector<Json> lines = heard();
+  const std::vector<Json> lines = received();
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_NE(lines[0]["start_id"], lines[1]["start_id"]);
   EXPECT_FALSE(lines[2].contains("start_id"));
@@ -171,52 +171,52 @@ TEST_F(CommanderTest, OnlyStartsHaveAUniqueStartId) {
 
 TEST_F(CommanderTest, AStartWithoutAnAnswerIsStopped) {
   const std::uint64_t number = start();
-  const Json line = heard().at(0);
+  const Json line = received().at(0);
   pass(7.9);
-  EXPECT_FALSE(commander_.take_answer(number, now_));
+  EXPECT_FALSE(commander_.take_response(number, now_));
   pass(0.2);
-  const auto answer = commander_.take_answer(number, now_);
-  ASSERT_TRUE(answer);
-  EXPECT_EQ((*answer)["error"]["code"], "no_answer");
+  const auto response = commander_.take_response(number, now_);
+  ASSERT_TRUE(response);
+  EXPECT_EQ((*response)["error"]["code"], "no_answer");
   const Json stop = expect_stop_of(line);
   reply(line, accepted_);
-  EXPECT_TRUE(heard().empty()) << "the stop of this start has already been sent";
+  EXPECT_TRUE(received().empty()) << "the stop of this start has already been sent";
   reply(stop, accepted_);
   expect_no_stop_any_more();
 }
 
 TEST_F(CommanderTest, StopsAStartWhoseClientDisconnects) {
   const std::uint64_t waits = start();
-  const Json line = heard().at(0);
+  const Json line = received().at(0);
   EXPECT_TRUE(commander_.is_open_start(waits));
-  commander_.forget(waits);
+  commander_.abandon(waits);
   reply(expect_stop_of(line), no_such_start_);
   const std::uint64_t answered = start();
-  const Json second = heard().at(0);
+  const Json second = received().at(0);
   reply(second, accepted_);
   EXPECT_TRUE(commander_.is_open_start(answered));
-  commander_.forget(answered);
+  commander_.abandon(answered);
   reply(expect_stop_of(second), accepted_);
   expect_no_stop_any_more();
 }
 
 TEST_F(CommanderTest, DoesNotStopAStartWhoseOutcomeIsKnown) {
   const std::uint64_t accepted = start();
-  reply(heard().at(0), accepted_);
-  EXPECT_EQ(commander_.take_answer(accepted, now_)->at("ok"), true);
-  commander_.forget(accepted);
+  reply(received().at(0), accepted_);
+  EXPECT_EQ(commander_.take_response(accepted, now_)->at("ok"), true);
+  commander_.abandon(accepted);
   const std::uint64_t refused = start();
-  reply(heard().at(0), {{"ok", false}, {"error", {{"code", "busy"}, {"message", ""}}}});
+  reply(received().at(0), {{"ok", false}, {"error", {{"code", "busy"}, {"message", ""}}}});
   EXPECT_FALSE(commander_.is_open_start(refused));
-  commander_.forget(refused);
+  commander_.abandon(refused);
   expect_no_stop_any_more();
 }
 
 TEST_F(CommanderTest, StopsAStartThatTheControlLoopDidNotConfirm) {
   const std::uint64_t number = start();
-  const Json line = heard().at(0);
+  const Json line = received().at(0);
   reply(line, {{"ok", false}, {"error", {{"code", "no_answer"}, {"message", ""}}}});
-  EXPECT_EQ(commander_.take_answer(number, now_)->at("error").at("code"), "no_answer");
+  EXPECT_EQ(commander_.take_response(number, now_)->at("error").at("code"), "no_answer");
   const Json stop = expect_stop_of(line);
   reply(stop, {{"ok", false}, {"error", {{"code", "no_answer"}, {"message", ""}}}});
   pass(1);
@@ -226,12 +226,12 @@ TEST_F(CommanderTest, StopsAStartThatTheControlLoopDidNotConfirm) {
 
 TEST_F(CommanderTest, SendsAPendingStopAfterReconnecting) {
   const std::uint64_t number = start();
-  const Json line = heard().at(0);
+  const Json line = received().at(0);
   client_.reset();
   listener_.reset();
   ::unlink(path_.c_str());
   pass(1);
-  EXPECT_EQ(commander_.take_answer(number, now_)->at("error").at("code"), "no_answer");
+  EXPECT_EQ(commander_.take_response(number, now_)->at("error").at("code"), "no_answer");
   pass(1);
   listener_ = std::move(*net::listen_unix(path_));
   pass(1);
@@ -242,8 +242,8 @@ TEST_F(CommanderTest, SendsAPendingStopAfterReconnecting) {
 
 TEST_F(CommanderTest, AtTheEndOfTheProgramEveryOpenStartIsStopped) {
   start();
-  const Json line = heard().at(0);
-  commander_.leave();
+  const Json line = received().at(0);
+  commander_.abandon_all();
   expect_stop_of(line);
 }
 

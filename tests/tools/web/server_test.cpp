@@ -78,25 +78,25 @@ class ServerTest : public ::testing::Test {
       text.append(bytes.data(), static_cast<std::size_t>(count));
     return text;
   }
-  static void say(const Descriptor& socket, const std::string& request) {
+  static void send_text(const Descriptor& socket, const std::string& request) {
     EXPECT_GT(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL), 0);
   }
   std::string ask(const std::string& request) const {
     const Descriptor socket = connect();
-    say(socket, request);
+    send_text(socket, request);
     return all_from(socket);
   }
   /// Sends the request at most 100 times, until the server has a free connection. Returns the last response.
-  std::string ask_patiently(const std::string& request) const {
+  std::string ask_with_retries(const std::string& request) const {
     std::string answer;
-    for (int attempt = 0; attempt < 100 && (answer.empty() || answer.starts_with(turned_away)); ++attempt) {
+    for (int attempt = 0; attempt < 100 && (answer.empty() || answer.starts_with(refused)); ++attempt) {
       if (attempt > 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
       answer = ask(request);
     }
     return answer;
   }
 
-  static constexpr const char* turned_away = "HTTP/1.1 503 Refused";
+  static constexpr const char* refused = "HTTP/1.1 503 Refused";
   fs::path folder_ = fs::temp_directory_path() / ("server_" + std::to_string(::getpid()));
   std::string large_ = std::string(3'000'000, 'r') + "end";
   Settings settings_;
@@ -124,7 +124,7 @@ TEST_F(ServerTest, AnswersAndEndsTheConnection) {
 TEST_F(ServerTest, ARequestReplacesASilentConnection) {
   std::vector<Descriptor> silent;
   for (std::size_t i = 0; i < settings_.max_connections; ++i) silent.push_back(connect());
-  const std::string answer = ask_patiently(get_page);
+  const std::string answer = ask_with_retries(get_page);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer;
 }
 
@@ -146,7 +146,7 @@ TEST_F(ServerTest, AHalfClosedConnectionReceivesDataFromDisk) {
        {get_file, std::string("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n"),
         std::string("GET /api/recordings HTTP/1.1\r\nHost: localhost\r\n\r\n")}) {
     const Descriptor socket = connect();
-    say(socket, request);
+    send_text(socket, request);
     ASSERT_EQ(::shutdown(socket.get(), SHUT_WR), 0);
     EXPECT_TRUE(all_from(socket).starts_with("HTTP/1.1 200")) << request;
   }
@@ -156,17 +156,17 @@ TEST_F(ServerTest, UnreadDownloadsDoNotBlockCommands) {
   std::vector<Descriptor> unread;
   for (std::size_t i = 0; i < 3 * settings_.max_connections; ++i) {
     unread.push_back(connect());
-    say(unread.back(), get_file);
-    const std::string answer = ask_patiently(post_stop);
+    send_text(unread.back(), get_file);
+    const std::string answer = ask_with_retries(post_stop);
     ASSERT_NE(answer.find("no_daemon"), std::string::npos) << i << ": " << answer;
   }
-  const std::string file = ask_patiently(get_file);
+  const std::string file = ask_with_retries(get_file);
   EXPECT_TRUE(file.ends_with(large_)) << "a client that reads replaces one that does not read";
 }
 
 TEST_F(ServerTest, ATruncatedFileEndsTheResponse) {
   const Descriptor socket = connect();
-  say(socket, get_file);
+  send_text(socket, get_file);
   char first = 0;
   ASSERT_EQ(::recv(socket.get(), &first, 1, 0), 1);
   fs::resize_file(folder_ / "runs" / "one" / "run.csv", 10);
@@ -214,16 +214,16 @@ class ScriptedDaemon {
 
 TEST_F(ServerTest, DisconnectedClientsDoNotBlockCommandsOfOthers) {
   ScriptedDaemon daemon(settings_.operate_socket);
-  for (std::size_t i = 0; i < 3 * Commander::most_waiting; ++i) {
+  for (std::size_t i = 0; i < 3 * Commander::max_pending; ++i) {
     Descriptor leaving = connect();
-    say(leaving, post_stop);
+    send_text(leaving, post_stop);
     ASSERT_FALSE(daemon.next_command().is_null()) << i;
     const linger at_once{1, 0};
     ::setsockopt(leaving.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
     leaving.reset();
   }
   const Descriptor waiting = connect();
-  say(waiting, post_stop);
+  send_text(waiting, post_stop);
   const auto command = daemon.next_command();
   ASSERT_FALSE(command.is_null());
   daemon.answer(command);

@@ -45,7 +45,7 @@ class SiteTest : public ::testing::Test {
     request += "\r\n" + body;
     Outcome outcome = site_.serve(request, 0, {.daemon = answer});
     if (!outcome.disk_request) return outcome;
-    const auto task = archive_.ask(*outcome.disk_request);
+    const auto task = archive_.submit(*outcome.disk_request);
     wait_for(*task);
     outcome = site_.serve(request, 0, {.disk = task.get()});
     if (outcome.file) outcome.bytes += all_of(outcome.file);
@@ -55,16 +55,16 @@ class SiteTest : public ::testing::Test {
     pollfd watched{archive_.descriptor(), POLLIN, 0};
     while (!task.done()) {
       ASSERT_EQ(::poll(&watched, 1, 30'000), 1);
-      archive_.hear();
+      archive_.clear_event();
     }
   }
   std::string all_of(const std::shared_ptr<const RegularFile>& file) {
     std::string bytes;
     while (bytes.size() < file->size) {
-      const auto piece = archive_.ask({.kind = DiskRequest::Kind::piece, .from = file});
-      wait_for(*piece);
-      if (piece->text().empty()) break;
-      bytes += piece->text();
+      const auto chunk = archive_.submit({.kind = DiskRequest::Kind::chunk, .from = file});
+      wait_for(*chunk);
+      if (chunk->text().empty()) break;
+      bytes += chunk->text();
     }
     return bytes;
   }
@@ -82,7 +82,7 @@ class SiteTest : public ::testing::Test {
   Gate gate_{settings_, *Tokens::parse("look " + look + "\noperate " + operate)};
   LiveState state_;
   Archive archive_{folder_};
-  OwnCounts counts_;
+  ServerCounts counts_;
   Site site_{settings_, gate_, state_, counts_, "draw()"};
 };
 
@@ -101,14 +101,14 @@ TEST_F(SiteTest, ThePageIsPublicButTheDataNeedAToken) {
 TEST_F(SiteTest, AViewerReadsAndOnlyAnOperatorSendsCommands) {
   EXPECT_EQ(get("/metrics", look).status, 200);
   EXPECT_EQ(get("/api/status", look).status, 503) << "no daemon has sent a status";
-  state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
+  state_.set_status({{"time_s", 1.0}, {"state", "idle"}});
   EXPECT_EQ(get("/api/status", look).status, 200);
   const Outcome refused = ask("POST", "/api/command", look, R"({"command":"stop"})");
   EXPECT_EQ(refused.status, 403);
   EXPECT_FALSE(refused.command);
-  const Outcome asked = ask("POST", "/api/command", operate, R"({"command":"stop"})");
-  ASSERT_TRUE(asked.command);
-  EXPECT_EQ((*asked.command)["command"], "stop");
+  const Outcome accepted_command = ask("POST", "/api/command", operate, R"({"command":"stop"})");
+  ASSERT_TRUE(accepted_command.command);
+  EXPECT_EQ((*accepted_command.command)["command"], "stop");
 }
 
 TEST_F(SiteTest, ReturnsTheReplyOfTheDaemon) {
@@ -165,14 +165,14 @@ TEST_F(SiteTest, AnUnresponsiveDiskCausesStatus503) {
     const std::string request = std::string("GET ") + path + " HTTP/1.1\r\nHost: localhost:1\r\n" +
                                 "Authorization: Bearer " + look + "\r\n\r\n";
     EXPECT_TRUE(site_.serve(request, 0).disk_request) << path;
-    const Outcome given_up = site_.serve(request, 0, {.disk = &silent});
-    EXPECT_EQ(given_up.status, 503) << path;
-    EXPECT_NE(given_up.bytes.find("does not respond"), std::string::npos) << path;
+    const Outcome timed_out_outcome = site_.serve(request, 0, {.disk = &silent});
+    EXPECT_EQ(timed_out_outcome.status, 503) << path;
+    EXPECT_NE(timed_out_outcome.bytes.find("does not respond"), std::string::npos) << path;
   }
 }
 
 TEST_F(SiteTest, MetricsDoNotNeedAResponsiveDisk) {
-  state_.take_health({{"made_unix_s", 7}, {"fingers", Json::array()}});
+  state_.set_health({{"made_unix_s", 7}, {"fingers", Json::array()}});
   const DiskTask silent{DiskRequest{}};
   const std::string request =
       "GET /metrics HTTP/1.1\r\nHost: localhost:1\r\nAuthorization: Bearer " + look + "\r\n\r\n";
@@ -183,11 +183,11 @@ TEST_F(SiteTest, MetricsDoNotNeedAResponsiveDisk) {
 }
 
 TEST_F(SiteTest, AStreamBeginsWithTheCurrentStatus) {
-  state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
+  state_.set_status({{"time_s", 1.0}, {"state", "idle"}});
   const Outcome stream = get("/api/stream", look);
   EXPECT_EQ(stream.status, 200);
-  ASSERT_TRUE(stream.follower);
-  EXPECT_EQ(stream.follower->role, Role::look);
+  ASSERT_TRUE(stream.stream_reader);
+  EXPECT_EQ(stream.stream_reader->role, Role::look);
   EXPECT_NE(stream.bytes.find("Content-Type: text/event-stream"), std::string::npos);
   EXPECT_NE(stream.bytes.find("\r\n\r\nevent: hello\ndata: {\"status\":{\"time_s\":1.0"), std::string::npos)
       << stream.bytes;

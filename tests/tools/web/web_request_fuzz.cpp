@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   settings.without_token = Role::operate;
   static Gate gate(settings, {});
   static LiveState state;
-  static const OwnCounts counts;
+  static const ServerCounts counts;
   static Site site(settings, gate, state, counts, "chart");
 
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

@@ -15,7 +15,7 @@ bool is_port(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char digit) { return digit >= '0' && digit <= '9'; });
 }
 
-bool equal_but_for_case(std::string_view one, std::string_view other) {
+bool equal_ignoring_case(std::string_view one, std::string_view other) {
   const auto lower = [](char letter) {
     return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
   };
@@ -30,18 +30,20 @@ Gate::Gate(const Settings& settings, Tokens tokens)
       tokens_(std::move(tokens)),
       sessions_(nanoseconds(settings.session_idle_s), nanoseconds(settings.session_s)) {}
 
-tl::expected<Role, Refusal> Gate::admit(const Credentials& credentials, bool changes, Nanoseconds now) {
+tl::expected<Role, Refusal> Gate::authorize(const Credentials& credentials, bool changes, Nanoseconds now) {
   if (!is_own_host(credentials.host, settings_.hosts)) {
     return tl::unexpected{Refusal{421,
                                   "the Host header contains an unknown name; if this name is correct, add it "
                                   "to `hosts` under `listen` in the configuration file"}};
   }
-  const bool elsewhere = !credentials.origin.empty() && !is_own_origin(credentials.origin, credentials.host);
-  const bool linked = credentials.fetch_site == "cross-site" || credentials.fetch_site == "same-site";
-  if (elsewhere || (changes && linked))
+  const bool is_other_origin =
+      !credentials.origin.empty() && !is_own_origin(credentials.origin, credentials.host);
+  const bool is_cross_site = credentials.fetch_site == "cross-site" || credentials.fetch_site == "same-site";
+  if (is_other_origin || (changes && is_cross_site))
     return tl::unexpected{Refusal{403, "the request was sent by a web page of a different server"}};
-  const bool says_where = !credentials.origin.empty() || !bearer_of(credentials.authorization).empty();
-  if (changes && !says_where)
+  const bool has_origin_or_token =
+      !credentials.origin.empty() || !bearer_of(credentials.authorization).empty();
+  if (changes && !has_origin_or_token)
     return tl::unexpected{Refusal{403, "the request has no Origin header and no token"}};
   return role_of(credentials, now);
 }
@@ -78,14 +80,14 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
     if (!is_port(host.substr(colon + 1))) return false;
     host = host.substr(0, colon);
   }
-  if (equal_but_for_case(host, "localhost") || net::is_numeric(std::string(host))) return true;
+  if (equal_ignoring_case(host, "localhost") || net::is_numeric(std::string(host))) return true;
   return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return equal_but_for_case(host, name); });
+                     [&](const std::string& name) { return equal_ignoring_case(host, name); });
 }
 
 bool is_own_origin(std::string_view origin, std::string_view host) {
   for (const std::string_view scheme : {"http://", "https://"}) {
-    if (origin.starts_with(scheme)) return equal_but_for_case(origin.substr(scheme.size()), host);
+    if (origin.starts_with(scheme)) return equal_ignoring_case(origin.substr(scheme.size()), host);
   }
   return false;
 }

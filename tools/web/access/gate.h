@@ -42,8 +42,8 @@ class Gate {
   /// `changes` is true, the request changes the state of the rig or of a session. Such a request must come
   /// from the page of this server, or have a token in its Authorization header: no other page can make a
   /// browser send this header.
-  [[nodiscard]] tl::expected<Role, Refusal> admit(const Credentials& credentials, bool changes,
-                                                  Nanoseconds now);
+  [[nodiscard]] tl::expected<Role, Refusal> authorize(const Credentials& credentials, bool changes,
+                                                      Nanoseconds now);
   /// Opens a session for the sender of a token and returns the id of the session. If the token is not in the
   /// token file, returns a refusal.
   [[nodiscard]] tl::expected<std::string, Refusal> open(std::string_view token, Nanoseconds now);

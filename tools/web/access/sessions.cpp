@@ -32,19 +32,20 @@ std::string Sessions::open(Grant grant, Nanoseconds now) {
   const auto of_token = std::count_if(sessions_.begin(), sessions_.end(), [&](const auto& entry) {
     return entry.second.grant.token == grant.token;
   });
-  if (static_cast<std::size_t>(of_token) >= most_per_token) end_idlest_of(grant.token);
+  if (static_cast<std::size_t>(of_token) >= most_per_token) end_most_idle(grant.token);
   std::string id = random_id();
   sessions_[id] = {grant, now, now};
   return id;
 }
 
-void Sessions::end_idlest_of(std::size_t token) {
-  auto idlest = sessions_.end();
+void Sessions::end_most_idle(std::size_t token) {
+  auto most_idle = sessions_.end();
   for (auto entry = sessions_.begin(); entry != sessions_.end(); ++entry) {
     if (entry->second.grant.token != token) continue;
-    if (idlest == sessions_.end() || entry->second.seen < idlest->second.seen) idlest = entry;
+    if (most_idle == sessions_.end() || entry->second.last_used < most_idle->second.last_used)
+      most_idle = entry;
   }
-  if (idlest != sessions_.end()) sessions_.erase(idlest);
+  if (most_idle != sessions_.end()) sessions_.erase(most_idle);
 }
 
 Role Sessions::role_of(std::string_view id, Nanoseconds now) {
@@ -54,7 +55,7 @@ Role Sessions::role_of(std::string_view id, Nanoseconds now) {
     sessions_.erase(found);
     return Role::none;
   }
-  found->second.seen = now;
+  found->second.last_used = now;
   return found->second.grant.role;
 }
 

@@ -35,14 +35,14 @@ class Sessions {
  private:
   struct Session {
     Grant grant;
-    Nanoseconds opened = 0;
-    Nanoseconds seen = 0;
+    Nanoseconds opened_at = 0;
+    Nanoseconds last_used = 0;
   };
   [[nodiscard]] bool ended(const Session& session, Nanoseconds now) const noexcept {
-    return now - session.seen > longest_idle_ || now - session.opened > longest_;
+    return now - session.last_used > longest_idle_ || now - session.opened_at > longest_;
   }
 
-  void end_idlest_of(std::size_t token);
+  void end_most_idle(std::size_t token);
 
   Nanoseconds longest_idle_;
   Nanoseconds longest_;

@@ -38,7 +38,7 @@ constexpr Quantity quantities[] = {
      "Root mean square of the model residual, from which the health state is determined."},
 };
 
-void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) {
+void add_per_channel(const Json& channels, MetricText& metrics, const auto& value_of) {
   for (const Json& channel : channels)
     metrics.sample({{"channel", json_text(channel, "name")}}, value_of(channel));
 }
@@ -53,8 +53,8 @@ double pressure_use(const Json& channel) {
   return away_kpa == 0 ? 0 : away_kpa / (end_kpa - rest_kpa);
 }
 
-void tell_one_of(const Json& channels, MetricText& metrics, const char* key,
-                 std::initializer_list<const char*> names) {
+void add_state_set(const Json& channels, MetricText& metrics, const char* key,
+                   std::initializer_list<const char*> names) {
   for (const Json& channel : channels) {
     for (const char* name : names)
       metrics.sample({{"channel", json_text(channel, "name")}, {key, name}},
@@ -64,28 +64,28 @@ void tell_one_of(const Json& channels, MetricText& metrics, const char* key,
 
 }  // namespace
 
-void tell_channels(const Json& channels, MetricText& metrics) {
+void add_channel_metrics(const Json& channels, MetricText& metrics) {
   if (!channels.is_array()) return;
   for (const Quantity& quantity : quantities) {
     metrics.family(quantity.name, gauge, quantity.help);
-    tell_each(channels, metrics, [&](const Json& channel) {
+    add_per_channel(channels, metrics, [&](const Json& channel) {
       return json_number(channel, quantity.key) / quantity.units_per_base_unit;
     });
   }
   metrics.family("softgrip_pressure_use_ratio", gauge,
                  "Distance of the command from the rest pressure as a share of the distance to the pressure "
                  "limit: 0 at rest, 1 at the limit.");
-  tell_each(channels, metrics, pressure_use);
+  add_per_channel(channels, metrics, pressure_use);
   metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is valid.");
-  tell_each(channels, metrics,
-            [](const Json& channel) { return json_text(channel, "validity") == "valid" ? 1.0 : 0.0; });
+  add_per_channel(channels, metrics,
+                  [](const Json& channel) { return json_text(channel, "validity") == "valid" ? 1.0 : 0.0; });
   metrics.family("softgrip_pressure_limited", gauge,
                  "1 while a limit of the rig or of the step restricts the pressure.");
-  tell_each(channels, metrics,
-            [](const Json& channel) { return json_member(channel, "limit").is_string() ? 1.0 : 0.0; });
+  add_per_channel(channels, metrics,
+                  [](const Json& channel) { return json_member(channel, "limit").is_string() ? 1.0 : 0.0; });
   metrics.family("softgrip_model_health", gauge,
                  "1 for the present health state of the model in use of the finger, 0 for the other states.");
-  tell_one_of(channels, metrics, "health", {"unknown", "healthy", "suspect", "unfit"});
+  add_state_set(channels, metrics, "health", {"unknown", "healthy", "suspect", "unfit"});
 }
 
 }  // namespace softgrip::web

@@ -57,7 +57,7 @@ class Counts {
   std::string_view kind_;
 };
 
-void tell_grips(const Json& events, const Json& channels, MetricText& metrics) {
+void add_grip_metrics(const Json& events, const Json& channels, MetricText& metrics) {
   const Counts grips(events, "grip_result");
   metrics.family("softgrip_grip_results_total", counter, "Number of grip results, by finger and result.");
   for (const Json& channel : channels) {
@@ -71,31 +71,31 @@ void tell_grips(const Json& events, const Json& channels, MetricText& metrics) {
   for (const char* result : results) metrics.sample({{"result", label_of(result)}}, rigs.of(result, {}));
 }
 
-void tell_by_code(const Json& events, MetricText& metrics, const char* kind, const char* name,
-                  const char* label, const char* help) {
+void add_counts_by_code(const Json& events, MetricText& metrics, const char* kind, const char* name,
+                        const char* label, const char* help) {
   metrics.family(name, counter, help);
   for (const auto& [code, count] : Counts(events, kind).by_code()) metrics.sample({{label, code}}, count);
 }
 
 }  // namespace
 
-void tell_events(const Json& events, const Json& channels, MetricText& metrics) {
+void add_event_metrics(const Json& events, const Json& channels, MetricText& metrics) {
   if (!events.is_array()) return;
-  tell_grips(events, channels, metrics);
+  add_grip_metrics(events, channels, metrics);
   const auto started = Counts(events, "sequence_started").by_code();
   metrics.family("softgrip_sequences_started_total", counter, "Number of sequences that were started.");
   metrics.sample(started.empty() ? 0 : started.begin()->second);
   metrics.family("softgrip_sequences_ended_total", counter, "Number of sequences that ended, by outcome.");
   for (const char* end : {"done", "failed", "stopped", "faulted"})
     metrics.sample({{"end", end}}, Counts(events, "sequence_finished").of(end, {}));
-  tell_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code",
-               "Number of faults that were latched, by code.");
-  tell_by_code(events, metrics, "request_refused", "softgrip_requests_refused_total", "code",
-               "Number of refused requests, by reason.");
-  tell_by_code(events, metrics, "bus_failed", "softgrip_bus_failures_total", "cause",
-               "Number of losses of communication with the board, by cause.");
-  tell_by_code(events, metrics, "reading_invalid", "softgrip_readings_invalid_total", "validity",
-               "Number of times that a reading became invalid, by reason.");
+  add_counts_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code",
+                     "Number of faults that were latched, by code.");
+  add_counts_by_code(events, metrics, "request_refused", "softgrip_requests_refused_total", "code",
+                     "Number of refused requests, by reason.");
+  add_counts_by_code(events, metrics, "bus_failed", "softgrip_bus_failures_total", "cause",
+                     "Number of losses of communication with the board, by cause.");
+  add_counts_by_code(events, metrics, "reading_invalid", "softgrip_readings_invalid_total", "validity",
+                     "Number of times that a reading became invalid, by reason.");
 }
 
 }  // namespace softgrip::web

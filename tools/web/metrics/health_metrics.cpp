@@ -13,7 +13,7 @@ using enum MetricText::Type;
 
 }  // namespace
 
-void tell_health(const Json& health, MetricText& metrics) {
+void add_health_metrics(const Json& health, MetricText& metrics) {
   if (!health.is_object()) return;
   metrics.family("softgrip_health_timestamp_seconds", gauge,
                  "Time at which softgrip health computed its last result, in seconds since 1970-01-01 UTC.");

@@ -35,20 +35,20 @@ class MetricText {
 /// Writes the metrics of the daemon. `status` is a status of the socket API; null if the daemon does not
 /// respond. If `status` is null, the metric `softgrip_up` with the value 0 is the only output. `statistics`
 /// is the statistics object of the socket API; null if it has not been received.
-void tell_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
-                 MetricText& metrics);
+void add_daemon_metrics(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
+                        MetricText& metrics);
 
 /// Writes the metrics of each finger. `channels` is the list in a status of the socket API.
-void tell_channels(const nlohmann::ordered_json& channels, MetricText& metrics);
+void add_channel_metrics(const nlohmann::ordered_json& channels, MetricText& metrics);
 
 /// Writes the numbers of events. `events` is a member of the statistics of the socket API, and `channels` is
 /// a member of its status. Every possible result of each finger has a sample, even if the result has not
 /// occurred: Prometheus cannot compute an increase from the first sample of a series.
-void tell_events(const nlohmann::ordered_json& events, const nlohmann::ordered_json& channels,
-                 MetricText& metrics);
+void add_event_metrics(const nlohmann::ordered_json& events, const nlohmann::ordered_json& channels,
+                       MetricText& metrics);
 
 /// Writes the metrics of a health result. `health` is the content of health.json. If it is null, writes
 /// nothing.
-void tell_health(const nlohmann::ordered_json& health, MetricText& metrics);
+void add_health_metrics(const nlohmann::ordered_json& health, MetricText& metrics);
 
 }  // namespace softgrip::web

@@ -55,32 +55,32 @@ class GateTest : public ::testing::Test {
 TEST_F(GateTest, RefusesForeignOriginsAndUnknownHosts) {
   Gate gate = this->gate(Role::operate);
   Credentials forged = page();
-  EXPECT_EQ(gate.admit(forged, true, 0), Role::operate);
+  EXPECT_EQ(gate.authorize(forged, true, 0), Role::operate);
   forged.origin = "http://evil.example";
-  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403);
-  EXPECT_EQ(status(gate.admit(forged, false, 0)), 403);
+  EXPECT_EQ(status(gate.authorize(forged, true, 0)), 403);
+  EXPECT_EQ(status(gate.authorize(forged, false, 0)), 403);
   forged = page();
   forged.fetch_site = "cross-site";
-  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403);
+  EXPECT_EQ(status(gate.authorize(forged, true, 0)), 403);
   forged.origin.clear();
-  EXPECT_EQ(gate.admit(forged, false, 0), Role::operate) << "a link from another site may open the page";
+  EXPECT_EQ(gate.authorize(forged, false, 0), Role::operate) << "a link from another site may open the page";
   forged.fetch_site.clear();
-  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403)
+  EXPECT_EQ(status(gate.authorize(forged, true, 0)), 403)
       << "a request that changes the state requires an Origin header";
   forged.host = "evil.example:8017";
   forged.origin = "http://evil.example:8017";
-  EXPECT_EQ(status(gate.admit(forged, false, 0)), 421)
+  EXPECT_EQ(status(gate.authorize(forged, false, 0)), 421)
       << "a request whose Host header names another host must be refused";
 }
 
 TEST_F(GateTest, ATokenInAHeaderNeedsNoOrigin) {
   Gate gate = this->gate(Role::none);
   Credentials collector{"localhost", "", "", "", "Bearer " + look};
-  EXPECT_EQ(gate.admit(collector, false, 0), Role::look);
+  EXPECT_EQ(gate.authorize(collector, false, 0), Role::look);
   collector.authorization = "Bearer " + operate;
-  EXPECT_EQ(gate.admit(collector, true, 0), Role::operate);
+  EXPECT_EQ(gate.authorize(collector, true, 0), Role::operate);
   collector.authorization = "Bearer " + std::string(24, 'c');
-  EXPECT_EQ(gate.admit(collector, false, 0), Role::none);
+  EXPECT_EQ(gate.authorize(collector, false, 0), Role::none);
 }
 
 TEST_F(GateTest, ASessionHasTheRoleOfItsTokenUntilItEnds) {
@@ -90,21 +90,21 @@ TEST_F(GateTest, ASessionHasTheRoleOfItsTokenUntilItEnds) {
   EXPECT_EQ(id.size(), 64U);
   EXPECT_NE(id, *gate.open(operate, 0));
   Credentials browser = page();
-  EXPECT_EQ(gate.admit(browser, true, 0), Role::none);
+  EXPECT_EQ(gate.authorize(browser, true, 0), Role::none);
   browser.cookie = "softgrip=" + id;
-  for (int s = 0; s < 100; s += 9) EXPECT_EQ(gate.admit(browser, true, s * ns_per_s), Role::operate) << s;
-  EXPECT_EQ(gate.admit(browser, true, 101 * ns_per_s), Role::none)
+  for (int s = 0; s < 100; s += 9) EXPECT_EQ(gate.authorize(browser, true, s * ns_per_s), Role::operate) << s;
+  EXPECT_EQ(gate.authorize(browser, true, 101 * ns_per_s), Role::none)
       << "a session ends after its time, even if it was in use";
 
   const std::string idle = *gate.open(look, 0);
   browser.cookie = "softgrip=" + idle;
-  EXPECT_EQ(gate.admit(browser, false, 9 * ns_per_s), Role::look);
-  EXPECT_EQ(gate.admit(browser, false, 20 * ns_per_s), Role::none);
+  EXPECT_EQ(gate.authorize(browser, false, 9 * ns_per_s), Role::look);
+  EXPECT_EQ(gate.authorize(browser, false, 20 * ns_per_s), Role::none);
 
   const std::string left = *gate.open(look, 0);
   browser.cookie = "softgrip=" + left;
   gate.close(browser.cookie);
-  EXPECT_EQ(gate.admit(browser, false, 0), Role::none);
+  EXPECT_EQ(gate.authorize(browser, false, 0), Role::none);
 }
 
 TEST_F(GateTest, LogInsWithOneTokenEndNoSessionOfAnother) {
@@ -115,9 +115,10 @@ TEST_F(GateTest, LogInsWithOneTokenEndNoSessionOfAnother) {
   first_viewer.cookie = "softgrip=" + *gate.open(look, 0);
   Credentials last_viewer = page();
   for (int i = 0; i < 1000; ++i) last_viewer.cookie = "softgrip=" + *gate.open(look, 1);
-  EXPECT_EQ(gate.admit(operator_page, true, 2), Role::operate);
-  EXPECT_EQ(gate.admit(last_viewer, false, 2), Role::look);
-  EXPECT_EQ(gate.admit(first_viewer, false, 2), Role::none) << "the number of sessions per token is limited";
+  EXPECT_EQ(gate.authorize(operator_page, true, 2), Role::operate);
+  EXPECT_EQ(gate.authorize(last_viewer, false, 2), Role::look);
+  EXPECT_EQ(gate.authorize(first_viewer, false, 2), Role::none)
+      << "the number of sessions per token is limited";
 }
 
 }  // namespace

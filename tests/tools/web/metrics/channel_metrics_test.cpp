@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 TEST(ChannelMetrics, EachChannelHasSeparateMetrics) {
   MetricText metrics;
-  tell_channels(
+  add_channel_metrics(
       Json::parse(
           R"([{"name": "left", "pressure_kpa": 1.5, "temperature_c": 23.5, "validity": "valid", "limit": "rig_pressure"},
                                 {"name": "right", "pressure_kpa": 2, "validity": "frozen", "limit": null}])"),

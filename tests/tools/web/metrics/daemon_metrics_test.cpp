@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 std::string told(const Json& status, const Json& statistics) {
   MetricText metrics;
-  tell_daemon(status, statistics, metrics);
+  add_daemon_metrics(status, statistics, metrics);
   return metrics.text();
 }
 

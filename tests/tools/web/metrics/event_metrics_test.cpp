@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 TEST(EventMetrics, EveryResultIsReportedAsZeroInitially) {
   MetricText metrics;
-  tell_events(Json::array(), Json::parse(R"([{"name": "left"}])"), metrics);
+  add_event_metrics(Json::array(), Json::parse(R"([{"name": "left"}])"), metrics);
   for (const char* result : {"holding", "no_part", "part_lost", "released", "error"}) {
     const std::string label = std::string("result=\"") + result + "\"} 0\n";
     EXPECT_NE(metrics.text().find("softgrip_grip_results_total{channel=\"left\"," + label),
@@ -25,7 +25,7 @@ TEST(EventMetrics, EveryResultIsReportedAsZeroInitially) {
 
 TEST(EventMetrics, ReportsNothingIfTheEventsAreUnknown) {
   MetricText metrics;
-  tell_events(nullptr, Json::array(), metrics);
+  add_event_metrics(nullptr, Json::array(), metrics);
   EXPECT_EQ(metrics.text(), "");
 }
 

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 std::string told(const Json& health) {
   MetricText metrics;
-  tell_health(health, metrics);
+  add_health_metrics(health, metrics);
   return metrics.text();
 }
 
