@@ -110,26 +110,26 @@ Descriptor accept_client(const Descriptor& listener) {
   return client;
 }
 
-bool is_shortage(int error) noexcept {
+bool is_descriptor_shortage(int error) noexcept {
   return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
 }
 
-Entrance::Entrance(Descriptor listener) : listener_(std::move(listener)) {
-  take_spares();
+Acceptor::Acceptor(Descriptor listener) : listener_(std::move(listener)) {
+  reserve_spares();
 }
 
-Descriptor Entrance::accept(Nanoseconds now) {
-  take_spares();
+Descriptor Acceptor::accept(Nanoseconds now) {
+  reserve_spares();
   Descriptor client = accept_client(listener_);
-  short_ = !client && is_shortage(errno);
-  if (!short_) return client;
+  out_of_descriptors_ = !client && is_descriptor_shortage(errno);
+  if (!out_of_descriptors_) return client;
   for (Descriptor& spare : spares_) spare.reset();
   client = accept_client(listener_);
-  if (!client) rests_until_ = now + rest;
+  if (!client) paused_until_ = now + retry_pause;
   return client;
 }
 
-void Entrance::take_spares() noexcept {
+void Acceptor::reserve_spares() noexcept {
   for (Descriptor& spare : spares_) {
     if (!spare && listener_) spare = Descriptor{::fcntl(listener_.get(), F_DUPFD_CLOEXEC, 0)};
   }

@@ -51,41 +51,41 @@ inline constexpr int backlog = 128;
 [[nodiscard]] Descriptor accept_client(const Descriptor& listener);
 
 /// Returns true if `error` is an error of accept_client() that means that no descriptor is free.
-[[nodiscard]] bool is_shortage(int error) noexcept;
+[[nodiscard]] bool is_descriptor_shortage(int error) noexcept;
 
 /// Accepts clients. If no descriptor is free, a waiting client cannot be accepted, and each poll() returns at
 /// once. A server that polled continuously would use a complete processor core. Therefore, the listener
 /// pauses. Before the pause, it closes its spare descriptors and accepts one client, because this client may
 /// want to stop the rig.
-class Entrance {
+class Acceptor {
  public:
-  /// Duration of a pause, after which the listener tries to accept clients again [ns].
-  static constexpr Nanoseconds rest = ns_per_s / 10;
+  /// Duration of a pause, after which the acceptor tries to accept clients again [ns].
+  static constexpr Nanoseconds retry_pause = ns_per_s / 10;
 
-  Entrance() = default;
+  Acceptor() = default;
   /// @param listener  a socket from listen_tcp() or listen_unix(); if it is empty, no client is accepted.
-  explicit Entrance(Descriptor listener);
+  explicit Acceptor(Descriptor listener);
 
-  /// Returns the descriptor for poll(); -1 while the listener pauses.
+  /// Returns the descriptor for poll(); -1 while the acceptor pauses.
   [[nodiscard]] int descriptor(Nanoseconds now) const noexcept {
-    return now < rests_until_ ? -1 : listener_.get();
+    return now < paused_until_ ? -1 : listener_.get();
   }
   /// Returns the next client, as accept_client() does. Returns an empty descriptor if no client waits, or if
   /// no descriptor is free for a client.
   [[nodiscard]] Descriptor accept(Nanoseconds now);
   /// Returns true if the last accept() found no free descriptor. In this case, the caller should close
   /// descriptors that it does not need.
-  [[nodiscard]] bool short_of_descriptors() const noexcept { return short_; }
+  [[nodiscard]] bool out_of_descriptors() const noexcept { return out_of_descriptors_; }
 
  private:
-  void take_spares() noexcept;
+  void reserve_spares() noexcept;
 
   Descriptor listener_;
   /// Spare descriptors that are closed to accept a client: one for the client, and one that the request of
   /// this client may need.
   std::array<Descriptor, 2> spares_;
-  Nanoseconds rests_until_ = 0;
-  bool short_ = false;
+  Nanoseconds paused_until_ = 0;
+  bool out_of_descriptors_ = false;
 };
 
 }  // namespace softgrip::net

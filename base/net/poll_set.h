@@ -19,14 +19,14 @@ class PollSet {
  public:
   /// The position of a descriptor in the set. A default-constructed position belongs to no descriptor and has
   /// no events.
-  class Place {
+  class Entry {
     friend PollSet;
     std::size_t index_ = SIZE_MAX;
   };
   enum class Outcome : std::uint8_t {
-    over,      ///< the wait has ended, because of an event, a signal or the end of its longest time
-    too_many,  ///< the set has more descriptors than the process may have
-    failed     ///< the wait failed; errno contains the reason
+    done,  ///< the wait has ended, because of an event, a signal or the end of its longest time
+    too_many_descriptors,  ///< the set has more descriptors than the process may have
+    failed                 ///< the wait failed; errno contains the reason
   };
   class Events {
    public:
@@ -36,7 +36,7 @@ class PollSet {
     [[nodiscard]] bool output() const noexcept { return (bits_ & POLLOUT) != 0; }
     /// Returns true after an error or a hang-up of the descriptor. The next read reports the error or the
     /// hang-up.
-    [[nodiscard]] bool ended() const noexcept { return (bits_ & (POLLERR | POLLHUP)) != 0; }
+    [[nodiscard]] bool hangup_or_error() const noexcept { return (bits_ & (POLLERR | POLLHUP)) != 0; }
     [[nodiscard]] bool invalid() const noexcept { return (bits_ & POLLNVAL) != 0; }
 
    private:
@@ -46,20 +46,20 @@ class PollSet {
   void clear() noexcept { polled_.clear(); }
   /// Adds a descriptor to the set. The descriptor -1 never has events. If `input` and `output` are false,
   /// only an error or a hang-up of the descriptor is an event.
-  Place add(int descriptor, bool input = true, bool output = false) {
+  Entry add(int descriptor, bool input = true, bool output = false) {
     polled_.push_back({descriptor, static_cast<short>((input ? POLLIN : 0) | (output ? POLLOUT : 0)), 0});
-    Place place;
-    place.index_ = polled_.size() - 1;
-    return place;
+    Entry entry;
+    entry.index_ = polled_.size() - 1;
+    return entry;
   }
   [[nodiscard]] Outcome wait(Nanoseconds longest) noexcept {
     const timespec limit{longest / ns_per_s, longest % ns_per_s};
-    if (::ppoll(polled_.data(), polled_.size(), &limit, nullptr) >= 0 || errno == EINTR) return Outcome::over;
-    return errno == EINVAL ? Outcome::too_many : Outcome::failed;
+    if (::ppoll(polled_.data(), polled_.size(), &limit, nullptr) >= 0 || errno == EINTR) return Outcome::done;
+    return errno == EINVAL ? Outcome::too_many_descriptors : Outcome::failed;
   }
   /// Returns the events that the last wait found for a descriptor.
-  [[nodiscard]] Events operator[](Place place) const noexcept {
-    return Events(place.index_ < polled_.size() ? polled_[place.index_].revents : short{0});
+  [[nodiscard]] Events operator[](Entry entry) const noexcept {
+    return Events(entry.index_ < polled_.size() ? polled_[entry.index_].revents : short{0});
   }
 
  private:

@@ -78,9 +78,9 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   static_cast<void>(polled_.wait(lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0)));
   for (auto& [id, client] : clients_) {
     const net::PollSet::Events events = polled_[client.place];
-    if (events.ended()) stop_writing(client);
+    if (events.hangup_or_error()) stop_writing(client);
     if (events.output()) write_to(client, now);
-    if (events.input() || (events.ended() && !client.input.has_line())) read_from(client);
+    if (events.input() || (events.hangup_or_error() && !client.input.has_line())) read_from(client);
     if (events.invalid()) client.dead = true;
   }
   for (const Entrance& entrance : listeners_) {
@@ -127,7 +127,7 @@ void SocketServer::accept_some(const Entrance& entrance) {
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
     Descriptor socket = net::accept_client(entrance.listener.socket());
-    if (socket || !net::is_shortage(errno)) return socket;
+    if (socket || !net::is_descriptor_shortage(errno)) return socket;
     if (displace_one(Role::look, true)) continue;
     if (entrance.role == Role::operate && displace_one(Role::operate, true)) continue;
     accepts_again_ = now_ + accept_pause;

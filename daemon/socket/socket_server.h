@@ -78,13 +78,13 @@ class SocketServer {
     bool deaf = false;  // true: the client does not read any more; the server still processes the lines that
                         // the client sent before
     bool dead = false;
-    net::PollSet::Place place;
+    net::PollSet::Entry place;
   };
 
   struct Entrance {
     Role role;
     Listener listener;
-    net::PollSet::Place place = {};
+    net::PollSet::Entry place = {};
   };
 
   explicit SocketServer(const rig::SocketSettings& settings) : settings_(settings) {}

@@ -30,36 +30,36 @@ int Server::ControlClient::input() const noexcept {
 Server::Server(Emulator& emulator, ServerSockets sockets)
     : emulator_(emulator),
       sockets_(std::move(sockets)),
-      entrances_(std::make_move_iterator(sockets_.modbus.begin()),
+      acceptors_(std::make_move_iterator(sockets_.modbus.begin()),
                  std::make_move_iterator(sockets_.modbus.end())),
-      control_entrance_(std::move(sockets_.control)) {
+      control_acceptor_(std::move(sockets_.control)) {
   if (sockets_.standard_input) control_clients_.emplace_back();
 }
 
 void Server::run(const std::function<void()>& idle) {
   net::PollSet polled;
-  std::vector<net::PollSet::Place> links(entrances_.size());
+  std::vector<net::PollSet::Entry> links(acceptors_.size());
   while (!quit_) {
     plug_line();
     polled.clear();
     const auto signal = polled.add(sockets_.signals.get());
-    // The descriptor of a listener that is closed or pauses is -1, for which poll() reports no events.
-    const auto control = polled.add(control_entrance_.descriptor(now()));
+    // The descriptor of an acceptor that is closed or pauses is -1, for which poll() reports no events.
+    const auto control = polled.add(control_acceptor_.descriptor(now()));
     for (std::size_t link = 0; link < links.size(); ++link)
-      links[link] = polled.add(entrances_[link].descriptor(now()));
-    for (ControlClient& client : control_clients_) client.place = polled.add(client.input());
+      links[link] = polled.add(acceptors_[link].descriptor(now()));
+    for (ControlClient& client : control_clients_) client.poll_entry = polled.add(client.input());
     for (Client& client : clients_)
-      client.place = polled.add(client.connection.descriptor(), true, client.connection.blocked());
+      client.poll_entry = polled.add(client.connection.descriptor(), true, client.connection.blocked());
     const auto outcome = polled.wait(timeout());
-    if (outcome == net::PollSet::Outcome::too_many && give_up_client()) continue;
-    if (outcome != net::PollSet::Outcome::over) return;
+    if (outcome == net::PollSet::Outcome::too_many_descriptors && give_up_client()) continue;
+    if (outcome != net::PollSet::Outcome::done) return;
 
     emulator_.advance(now());
     for (ControlClient& client : control_clients_) {
-      if (polled[client.place]) read_control(client);
+      if (polled[client.poll_entry]) read_control(client);
     }
     std::erase_if(control_clients_, [](const ControlClient& client) { return !client.open; });
-    std::erase_if(clients_, [&](Client& client) { return !serve(client, polled[client.place]); });
+    std::erase_if(clients_, [&](Client& client) { return !serve(client, polled[client.poll_entry]); });
     if (polled[signal]) take_signal();
     if (polled[control]) accept_control();
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -110,7 +110,7 @@ Nanoseconds Server::timeout() const {
 
 bool Server::serve(Client& client, net::PollSet::Events events) {
   bool open = true;
-  if (events.input() || events.ended()) {
+  if (events.input() || events.hangup_or_error()) {
     open = client.connection.receive([&](const Request& request) {
       return emulator_.serve(now(), request, client.link, client.opened_at);
     });
@@ -119,7 +119,7 @@ bool Server::serve(Client& client, net::PollSet::Events events) {
 }
 
 void Server::accept_modbus(std::size_t link) {
-  Descriptor client = entrances_[link].accept(now());
+  Descriptor client = acceptors_[link].accept(now());
   // If the fault `disconnect` is active, or if max_modbus_clients are already connected, the server accepts a
   // new client and closes its connection immediately.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
@@ -131,7 +131,7 @@ void Server::accept_modbus(std::size_t link) {
 }
 
 void Server::count_clients() {
-  for (std::size_t link = 0; link < std::max<std::size_t>(entrances_.size(), 1); ++link) {
+  for (std::size_t link = 0; link < std::max<std::size_t>(acceptors_.size(), 1); ++link) {
     const auto clients = std::count_if(clients_.begin(), clients_.end(),
                                        [link](const Client& client) { return client.link == link; });
     emulator_.count_clients(static_cast<std::size_t>(clients), link);
@@ -139,7 +139,7 @@ void Server::count_clients() {
 }
 
 void Server::accept_control() {
-  Descriptor client = control_entrance_.accept(now());
+  Descriptor client = control_acceptor_.accept(now());
   if (client && control_clients_.size() < max_control_clients) {
     control_clients_.push_back({std::move(client), {}, true});
   }

@@ -45,7 +45,7 @@ class Server {
     Descriptor socket;  ///< socket of the client; empty: the client is the standard input
     net::LineBuffer pending;
     bool open = true;
-    net::PollSet::Place place = {};
+    net::PollSet::Entry poll_entry = {};
     [[nodiscard]] int input() const noexcept;
   };
 
@@ -63,7 +63,7 @@ class Server {
     Connection connection;
     std::size_t link = 0;
     Nanoseconds opened_at = 0;
-    net::PollSet::Place place = {};
+    net::PollSet::Entry poll_entry = {};
   };
   /// Processes the events of a Modbus client. Returns false if the client has closed its connection or must
   /// be disconnected.
@@ -73,8 +73,8 @@ class Server {
 
   Emulator& emulator_;
   ServerSockets sockets_;
-  std::vector<net::Entrance> entrances_;  // one entrance for each link
-  net::Entrance control_entrance_;
+  std::vector<net::Acceptor> acceptors_;  // one acceptor for each link
+  net::Acceptor control_acceptor_;
   Clock::time_point start_ = Clock::now();
   std::list<Client> clients_;
   std::list<ControlClient> control_clients_;

@@ -31,29 +31,29 @@ Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, 
     : settings_(settings),
       gateway_(gateway),
       daemon_(settings.socket),
-      entrance_(std::move(listener)),
+      acceptor_(std::move(listener)),
       signals_(std::move(signals)) {}
 
 void Server::run() {
   net::PollSet polled;
   for (;; polled.clear()) {
     const auto signal = polled.add(signals_.get());
-    const auto newcomer = polled.add(entrance_.descriptor(clock_.now()));
+    const auto listener = polled.add(acceptor_.descriptor(clock_.now()));
     polled.add(daemon_.descriptor());
     for (Line& line : lines_)
-      line.place = polled.add(line.connection.descriptor(), true, line.connection.blocked());
+      line.poll_entry = polled.add(line.connection.descriptor(), true, line.connection.blocked());
     const auto outcome = polled.wait(Gateway::longest_pause);
-    if (outcome == net::PollSet::Outcome::too_many && give_up_line()) continue;
-    if (outcome != net::PollSet::Outcome::over || polled[signal]) return;
+    if (outcome == net::PollSet::Outcome::too_many_descriptors && give_up_line()) continue;
+    if (outcome != net::PollSet::Outcome::done || polled[signal]) return;
     const Nanoseconds now = clock_.now();
     if (daemon_.connect(now)) gateway_.daemon_came(now);
     const auto take = [&](const nlohmann::ordered_json& line) { gateway_.daemon_said(line, now); };
     if (daemon_ && !daemon_.hear(take)) gateway_.daemon_went();
     gateway_.look_after(now);
     for (Line& line : lines_) {
-      if (!serve(line, polled[line.place], now)) gateway_.masters().leave(line.master);
+      if (!serve(line, polled[line.poll_entry], now)) gateway_.masters().leave(line.master);
     }
-    if (polled[newcomer]) accept(now);
+    if (polled[listener]) accept(now);
     std::erase_if(lines_, [&](const Line& line) { return !gateway_.masters().has(line.master); });
     if (!daemon_) continue;
     for (const auto& line : gateway_.lines_to_daemon()) daemon_.send(line);
@@ -70,7 +70,7 @@ bool Server::give_up_line() {
 }
 
 void Server::accept(Nanoseconds now) {
-  Descriptor socket = entrance_.accept(now);
+  Descriptor socket = acceptor_.accept(now);
   if (!socket) return;
   const std::string address = address_of(socket.get());
   const std::vector<std::string>& allow = settings_.allow;
@@ -83,7 +83,7 @@ bool Server::serve(Line& line, net::PollSet::Events events, Nanoseconds now) {
   Master* const master = gateway_.masters().find(line.master);
   if (master == nullptr) return false;
   bool open = true;
-  if (events.input() || events.ended()) {
+  if (events.input() || events.hangup_or_error()) {
     open = line.connection.receive(
         [&](const modbus::Request& request) { return gateway_.serve(line.master, request, now); });
     master->half = line.connection.half();

@@ -26,7 +26,7 @@ class Server {
   struct Line {
     Masters::Id master;
     modbus::Connection connection;
-    net::PollSet::Place place = {};
+    net::PollSet::Entry poll_entry = {};
   };
   /// Closes one connection, because the process uses more descriptors than it may have. Returns false if
   /// there is no connection to close.
@@ -38,7 +38,7 @@ class Server {
   const Settings& settings_;
   Gateway& gateway_;
   tools::DaemonLink daemon_;
-  net::Entrance entrance_;
+  net::Acceptor acceptor_;
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Line> lines_;

@@ -58,7 +58,7 @@ Server::Server(const Settings& settings, Tokens tokens, std::string chart_js, De
       watch_(settings.look_socket, state_),
       commander_(settings.operate_socket),
       archive_(settings.recordings),
-      listener_(std::move(listener)),
+      acceptor_(std::move(listener)),
       signals_(std::move(signals)) {}
 
 void Server::run() {
@@ -70,7 +70,7 @@ void Server::serve_until_signal() {
   net::PollSet polled;
   for (;; polled.clear()) {
     const auto signal = polled.add(signals_.get());
-    const auto listener = polled.add(listener_.descriptor(clock_.now()));
+    const auto listener = polled.add(acceptor_.descriptor(clock_.now()));
     polled.add(watch_.descriptor());
     polled.add(commander_.descriptor());
     const auto disk = polled.add(archive_.descriptor());
@@ -79,8 +79,8 @@ void Server::serve_until_signal() {
       connection.poll_entry = polled.add(client.descriptor(), !client.input_closed(), client.has_unsent());
     }
     const auto outcome = polled.wait(poll_timeout);
-    if (outcome == net::PollSet::Outcome::too_many && reduce_connection_limit()) continue;
-    if (outcome != net::PollSet::Outcome::over || polled[signal]) return;
+    if (outcome == net::PollSet::Outcome::too_many_descriptors && reduce_connection_limit()) continue;
+    if (outcome != net::PollSet::Outcome::done || polled[signal]) return;
     const Nanoseconds now = clock_.now();
     watch_.update(now);
     commander_.update(now);
@@ -119,9 +119,9 @@ void Server::update_counts() {
 
 void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
-    Descriptor socket = listener_.accept(now);
+    Descriptor socket = acceptor_.accept(now);
     // If the number of free descriptors is too small for the next client, another connection is closed.
-    if (listener_.short_of_descriptors()) static_cast<void>(make_room_for_connection(now));
+    if (acceptor_.out_of_descriptors()) static_cast<void>(make_room_for_connection(now));
     if (!socket) return;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &send_buffer_size, sizeof send_buffer_size);
     if (connections_.size() < max_connections_ || make_room_for_connection(now)) {
@@ -139,7 +139,7 @@ void Server::accept(Nanoseconds now) {
 
 void Server::process_events(Connection& connection, net::PollSet::Events events, Nanoseconds now) {
   Client& client = connection.client;
-  if (events.input() || events.ended()) {
+  if (events.input() || events.hangup_or_error()) {
     connection.closing = !client.receive();
     if (!connection.closing && client.phase() == Phase::receiving) {
       serve(connection, now);

@@ -45,7 +45,7 @@ class Server {
     std::shared_ptr<const DiskTask> task;  // pending request to the disk
     Nanoseconds deadline = 0;              // time at which the wait for the disk ends without a result
     bool closing = false;                  // true: the connection is removed at the end of this cycle
-    net::PollSet::Place poll_entry = {};
+    net::PollSet::Entry poll_entry = {};
   };
   /// The connections that are not marked for removal, with the properties that determine which connection is
   /// removed next.
@@ -91,7 +91,7 @@ class Server {
   DaemonWatch watch_;
   Commander commander_;
   Archive archive_;
-  net::Entrance listener_;
+  net::Acceptor acceptor_;
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Connection> connections_;

@@ -28,26 +28,26 @@ std::pair<Descriptor, Descriptor> connected() {
 
 TEST(PollSet, ReportsTheEventsOfEachDescriptor) {
   auto [quiet, quiet_peer] = connected();
-  auto [heard, heard_peer] = connected();
-  auto [left, left_peer] = connected();
-  ASSERT_EQ(::write(heard_peer.get(), "x", 1), 1);
-  left_peer.reset();
+  auto [readable, readable_peer] = connected();
+  auto [closed, closed_peer] = connected();
+  ASSERT_EQ(::write(readable_peer.get(), "x", 1), 1);
+  closed_peer.reset();
   PollSet polled;
   const auto none = polled.add(-1);
   const auto idle = polled.add(quiet.get());
-  const auto input = polled.add(heard.get());
+  const auto input = polled.add(readable.get());
   const auto output = polled.add(quiet.get(), true, true);
-  const auto ended = polled.add(left.get(), false);
-  const auto ignored = polled.add(heard.get(), false);
+  const auto ended = polled.add(closed.get(), false);
+  const auto ignored = polled.add(readable.get(), false);
   const auto invalid = polled.add(1'000'000);
-  ASSERT_EQ(polled.wait(ns_per_s), Outcome::over);
+  ASSERT_EQ(polled.wait(ns_per_s), Outcome::done);
   EXPECT_FALSE(polled[none]);
   EXPECT_FALSE(polled[idle]);
   EXPECT_TRUE(polled[input] && polled[input].input());
-  EXPECT_FALSE(polled[input].output() || polled[input].ended() || polled[input].invalid());
+  EXPECT_FALSE(polled[input].output() || polled[input].hangup_or_error() || polled[input].invalid());
   EXPECT_TRUE(polled[output] && polled[output].output());
   EXPECT_FALSE(polled[output].input());
-  EXPECT_TRUE(polled[ended] && polled[ended].ended());
+  EXPECT_TRUE(polled[ended] && polled[ended].hangup_or_error());
   EXPECT_FALSE(polled[ended].input());
   EXPECT_FALSE(polled[ignored]);
   EXPECT_TRUE(polled[invalid] && polled[invalid].invalid());
@@ -56,10 +56,10 @@ TEST(PollSet, ReportsTheEventsOfEachDescriptor) {
 TEST(PollSet, TheWaitEndsAtTheTimeout) {
   auto [quiet, peer] = connected();
   PollSet polled;
-  const auto place = polled.add(quiet.get());
-  EXPECT_EQ(polled.wait(0), Outcome::over);
-  EXPECT_EQ(polled.wait(ns_per_s / 1000), Outcome::over);
-  EXPECT_FALSE(polled[place]);
+  const auto entry = polled.add(quiet.get());
+  EXPECT_EQ(polled.wait(0), Outcome::done);
+  EXPECT_EQ(polled.wait(ns_per_s / 1000), Outcome::done);
+  EXPECT_FALSE(polled[entry]);
 }
 
 TEST(PollSet, CanBeReusedAfterClear) {
@@ -68,34 +68,34 @@ TEST(PollSet, CanBeReusedAfterClear) {
   ASSERT_EQ(::write(first_peer.get(), "x", 1), 1);
   PollSet polled;
   const auto old = polled.add(first.get());
-  ASSERT_EQ(polled.wait(0), Outcome::over);
+  ASSERT_EQ(polled.wait(0), Outcome::done);
   EXPECT_TRUE(polled[old]);
-  EXPECT_FALSE(polled[PollSet::Place()]) << "a place without a descriptor";
+  EXPECT_FALSE(polled[PollSet::Entry()]) << "an entry without a descriptor";
   polled.clear();
-  ASSERT_EQ(polled.wait(0), Outcome::over);
+  ASSERT_EQ(polled.wait(0), Outcome::done);
   EXPECT_FALSE(polled[old]) << "the set is empty";
-  const auto place = polled.add(second.get());
-  ASSERT_EQ(polled.wait(0), Outcome::over);
-  EXPECT_FALSE(polled[place]);
+  const auto entry = polled.add(second.get());
+  ASSERT_EQ(polled.wait(0), Outcome::done);
+  EXPECT_FALSE(polled[entry]);
 }
 
 TEST(PollSet, ReportsTooManyDescriptors) {
-  rlimit usual{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);
-  auto [heard, peer] = connected();
+  rlimit original_limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &original_limit), 0);
+  auto [readable, peer] = connected();
   ASSERT_EQ(::write(peer.get(), "x", 1), 1);
   PollSet polled;
-  const auto place = polled.add(heard.get());
+  const auto entry = polled.add(readable.get());
   polled.add(-1);
-  rlimit one = usual;
+  rlimit one = original_limit;
   one.rlim_cur = 1;
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &one), 0);
   const Outcome outcome = polled.wait(0);
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &usual), 0);
-  EXPECT_EQ(outcome, Outcome::too_many);
-  EXPECT_FALSE(polled[place]) << "there are no events after a failure";
-  EXPECT_EQ(polled.wait(0), Outcome::over);
-  EXPECT_TRUE(polled[place]);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &original_limit), 0);
+  EXPECT_EQ(outcome, Outcome::too_many_descriptors);
+  EXPECT_FALSE(polled[entry]) << "there are no events after a failure";
+  EXPECT_EQ(polled.wait(0), Outcome::done);
+  EXPECT_TRUE(polled[entry]);
 }
 
 TEST(PollSet, ASignalEndsTheWait) {
@@ -105,18 +105,18 @@ TEST(PollSet, ASignalEndsTheWait) {
   ASSERT_EQ(::sigaction(SIGUSR1, &action, &before), 0);
   auto [quiet, peer] = connected();
   PollSet polled;
-  const auto place = polled.add(quiet.get());
-  std::atomic<bool> over{false};
-  std::thread sender([&over, receiver = ::pthread_self()] {
-    while (!over) {
+  const auto entry = polled.add(quiet.get());
+  std::atomic<bool> stop{false};
+  std::thread sender([&stop, receiver = ::pthread_self()] {
+    while (!stop) {
       ::pthread_kill(receiver, SIGUSR1);
       ::usleep(1000);
     }
   });
-  EXPECT_EQ(polled.wait(60 * ns_per_s), Outcome::over);
-  over = true;
+  EXPECT_EQ(polled.wait(60 * ns_per_s), Outcome::done);
+  stop = true;
   sender.join();
-  EXPECT_FALSE(polled[place]);
+  EXPECT_FALSE(polled[entry]);
   ASSERT_EQ(::sigaction(SIGUSR1, &before, nullptr), 0);
 }
 
