@@ -71,7 +71,7 @@ FAULTS = (
      "const bool follows = ahead(entry.counter) == 1 && cursor.at == newest().counter;", "const bool follows = true;",
      60, "plc"),
     ("softgrip-plc forgets the reaction to a stopped heartbeat while no daemon runs (defect 10)", "tools/plc/gateway.cpp",
-     "if (!connected_ || reaction_ ||", "if (!connected_) watch_.confirm();\n  if (!connected_ || reaction_ ||", 60, "plc"),
+     "if (!connected_ || reaction_id_ ||", "if (!connected_) heartbeat_monitor_.confirm();\n  if (!connected_ || reaction_id_ ||", 60, "plc"),
     ("softgrip run ends with exit code 0 after a signal (defect 3)", "daemon/service/daemon.cpp",
      "return outcome.safe_state_confirmed ? ExitCode::not_acceptable : ExitCode::failed;", "return done;", 60, "run"),
 )

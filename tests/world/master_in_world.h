@@ -9,8 +9,8 @@
 
 #include "base/time.h"
 #include "drivers/modbus_server/requests.h"
+#include "tools/plc/client_connections.h"
 #include "tools/plc/codes.h"
-#include "tools/plc/masters.h"
 
 namespace softgrip::world {
 
@@ -35,7 +35,7 @@ struct End {
 /// request.
 struct Wire {
   std::size_t master = 0;
-  plc::Masters::Id id = 0;
+  plc::ClientConnections::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Block> flying;
   Nanoseconds arrives = 0;

@@ -143,7 +143,7 @@ class PlcInWorld final : public Guest {
   }
 
   [[nodiscard]] Nanoseconds next_turn() const {
-    Nanoseconds next = around_.scheduler.now() + Gateway::longest_pause;
+    Nanoseconds next = around_.scheduler.now() + Gateway::max_update_period;
     for (const Wire& wire : wires_) {
       if (wire.flying && wire.arrived_bytes == 0) next = std::min(next, wire.arrives);
     }
@@ -153,14 +153,14 @@ class PlcInWorld final : public Guest {
   void turn(Nanoseconds now) {
     receive(now);
     watch_.look(now);
-    gateway_->look_after(now);
+    gateway_->update(now);
     send(now, waiting_);
-    if (!gateway_->handshake().waits()) waiting_.reset();
+    if (!gateway_->handshake().has_waiting()) waiting_.reset();
     for (Wire& wire : wires_) {
-      if (wire.flying && gateway_->masters().has(wire.id) && wire.arrives <= around_.scheduler.now())
+      if (wire.flying && gateway_->connections().has(wire.id) && wire.arrives <= around_.scheduler.now())
         deliver(wire, now);
     }
-    std::erase_if(wires_, [&](const Wire& wire) { return !gateway_->masters().has(wire.id); });
+    std::erase_if(wires_, [&](const Wire& wire) { return !gateway_->connections().has(wire.id); });
   }
 
   void deliver(Wire& wire, Nanoseconds now) {
@@ -176,19 +176,19 @@ class PlcInWorld final : public Guest {
       wire.heartbeat = master.heard = block.words[6];
     }
     watch_.arrived(block.command);
-    const bool waited = gateway_->handshake().waits();
+    const bool waited = gateway_->handshake().has_waiting();
     static_cast<void>(gateway_->serve(wire.id, *request, now));
-    gateway_->masters().find(wire.id)->half = false;
+    gateway_->connections().find(wire.id)->partial_request = false;
     send(now, block);
-    if (!waited && gateway_->handshake().waits()) waiting_ = block;
-    if (!gateway_->handshake().waits()) waiting_.reset();
+    if (!waited && gateway_->handshake().has_waiting()) waiting_ = block;
+    if (!gateway_->handshake().has_waiting()) waiting_.reset();
     answered_[wire.id] = block;
     wire.reply = read_end(wire.id, now);
     // A master that has opened a newer connection closes its old one.
-    if (wire.left) gateway_->masters().leave(wire.id);
+    if (wire.left) gateway_->connections().remove(wire.id);
   }
 
-  [[nodiscard]] End read_end(plc::Masters::Id id, Nanoseconds now) {
+  [[nodiscard]] End read_end(plc::ClientConnections::Id id, Nanoseconds now) {
     modbus::Request request{1, 1, {3}};
     modbus::append_word(request.pdu, settings_.registers.at(plc::Name::done_counter));
     modbus::append_word(request.pdu, 3);
@@ -203,13 +203,13 @@ class PlcInWorld final : public Guest {
     if (!client_ && host_.daemon() != nullptr && (tried_at_ == 0 || now - tried_at_ >= retry_pause)) {
       tried_at_ = now;
       client_ = host_.daemon()->socket->connect();
-      gateway_->daemon_came(now);
+      gateway_->on_daemon_connected(now);
     }
     if (client_ && host_.daemon() == nullptr) lose_daemon();
     if (!client_) return;
     for (const Json& line : host_.daemon()->socket->hear(*client_)) {
       watch_.answered(line);
-      gateway_->daemon_said(line, now);
+      gateway_->on_daemon_line(line, now);
     }
   }
 
@@ -217,7 +217,7 @@ class PlcInWorld final : public Guest {
     if (!client_) return;
     client_.reset();
     watch_.daemon_died();
-    if (gateway_) gateway_->daemon_went();
+    if (gateway_) gateway_->on_daemon_disconnected();
   }
 
   void hang_up() {
@@ -229,7 +229,7 @@ class PlcInWorld final : public Guest {
   /// Sends the messages of the gateway immediately. `cause` is the block of registers that made the gateway
   /// send these messages; nullopt: no block.
   void send(Nanoseconds now, const std::optional<Block>& cause) {
-    for (const Json& line : gateway_->lines_to_daemon()) {
+    for (const Json& line : gateway_->take_lines_to_daemon()) {
       around_.trace("softgrip-plc to the daemon: {}", line.dump());
       watch_.sent(line, cause, now);
       if (!client_ || host_.daemon() == nullptr) continue;
@@ -249,8 +249,8 @@ class PlcInWorld final : public Guest {
 
   Wire* connect(std::size_t master) {
     if (!gateway_) return nullptr;
-    const auto id = gateway_->masters().admit(master_addresses[master], clock_seen());
-    std::erase_if(wires_, [&](const Wire& wire) { return !gateway_->masters().has(wire.id); });
+    const auto id = gateway_->connections().admit(master_addresses[master], clock_seen());
+    std::erase_if(wires_, [&](const Wire& wire) { return !gateway_->connections().has(wire.id); });
     if (!id) return nullptr;
     wires_.push_back({master, *id, {}, {}, 0, 0, false, {}, {}});
     return &wires_.back();
@@ -294,11 +294,12 @@ class PlcInWorld final : public Guest {
     if (wire == nullptr) return;
     if (!wire->flying) fly(*wire, masters_[index], 0);
     wire->arrives = around_.scheduler.now() + incident.duration;
-    if (incident.kind == Kind::plc_half && wire->arrived_bytes == 0 && gateway_->masters().has(wire->id)) {
+    if (incident.kind == Kind::plc_half && wire->arrived_bytes == 0 &&
+        gateway_->connections().has(wire->id)) {
       const modbus::Bytes bytes = wire->flying->bytes();
       wire->arrived_bytes = bytes.size() / 2;
       wire->stream.append(std::span(bytes).first(wire->arrived_bytes));
-      gateway_->masters().find(wire->id)->half = wire->stream.half();
+      gateway_->connections().find(wire->id)->partial_request = wire->stream.half();
     }
     wire->left = true;
     connect(index);
@@ -317,7 +318,7 @@ class PlcInWorld final : public Guest {
   Nanoseconds tried_at_ = 0;
   std::array<MasterInWorld, master_count> masters_;
   std::list<Wire> wires_;
-  std::map<plc::Masters::Id, Block> answered_;
+  std::map<plc::ClientConnections::Id, Block> answered_;
   std::optional<Block> waiting_;
 };
 

@@ -28,7 +28,7 @@ enum class Reason : std::uint16_t {
   no_daemon,
   no_such_command,
   no_such_recipe,
-  master_silent,
+  client_silent,
   busy,
   sequence_refused,
   not_allowed,

@@ -13,9 +13,9 @@
 #include "drivers/modbus_server/registers.h"
 #include "drivers/modbus_server/requests.h"
 #include "rig/plc_file/settings.h"
+#include "tools/plc/client_connections.h"
 #include "tools/plc/handshake.h"
-#include "tools/plc/master_watch.h"
-#include "tools/plc/masters.h"
+#include "tools/plc/heartbeat_monitor.h"
 
 namespace softgrip::plc {
 
@@ -26,62 +26,66 @@ class Gateway {
 
   /// Returns the connected clients (Modbus masters). The owner adds and removes connections through this
   /// object. The owner must close each connection that this object has removed.
-  [[nodiscard]] Masters& masters() noexcept { return masters_; }
-  [[nodiscard]] const Masters& masters() const noexcept { return masters_; }
+  [[nodiscard]] ClientConnections& connections() noexcept { return connections_; }
+  [[nodiscard]] const ClientConnections& connections() const noexcept { return connections_; }
   /// Returns the response to a request of the connection `id`. If the request contains a command, passes the
   /// command to the daemon.
-  [[nodiscard]] modbus::Reply serve(Masters::Id id, const modbus::Request& request, Nanoseconds now);
+  [[nodiscard]] modbus::Reply serve(ClientConnections::Id id, const modbus::Request& request,
+                                    Nanoseconds now);
   /// Processes the waiting command and the silent clients. Must be called after the daemon's lines were
-  /// processed, and at least every `longest_pause`.
-  void look_after(Nanoseconds now);
-  static constexpr Nanoseconds longest_pause = 20'000'000;
+  /// processed, and at least every `max_update_period`.
+  void update(Nanoseconds now);
+  static constexpr Nanoseconds max_update_period = 20'000'000;
 
   /// Notes that the connection to the daemon was opened. Must be called after each new connection.
-  void daemon_came(Nanoseconds now);
+  void on_daemon_connected(Nanoseconds now);
   /// Processes one line that the daemon has sent.
-  void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
+  void on_daemon_line(const nlohmann::ordered_json& line, Nanoseconds now);
   /// Notes that the connection to the daemon has ended. Must be called after each loss of the connection.
-  void daemon_went() noexcept;
+  void on_daemon_disconnected() noexcept;
   /// Returns the lines that must be sent to the daemon, the oldest line first, and removes them from the
   /// gateway.
-  [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
+  [[nodiscard]] std::vector<nlohmann::ordered_json> take_lines_to_daemon();
 
   [[nodiscard]] const Handshake& handshake() const noexcept { return handshake_; }
-  [[nodiscard]] const MasterWatch& watch() const noexcept { return watch_; }
+  [[nodiscard]] const HeartbeatMonitor& heartbeat_monitor() const noexcept { return heartbeat_monitor_; }
   /// Returns true if a daemon is connected and has sent its status within the permitted time.
-  [[nodiscard]] bool hears_daemon(Nanoseconds now) const noexcept;
+  [[nodiscard]] bool daemon_responds(Nanoseconds now) const noexcept;
   /// Returns the counters of the commands to which the daemon has not responded, the oldest command first.
-  [[nodiscard]] std::vector<std::uint16_t> unanswered() const;
-  /// reacts() returns true if stop or vent was sent because a client is silent, and the daemon has not
-  /// responded to this command. reaction_confirms() returns true if the response to this command also covers
-  /// the latest silence of a client.
-  [[nodiscard]] bool reacts() const noexcept { return reaction_.has_value(); }
-  [[nodiscard]] bool reaction_confirms() const noexcept { return reaction_ && reaction_confirms_; }
+  [[nodiscard]] std::vector<std::uint16_t> pending_counters() const;
+  /// reaction_pending() returns true if stop or vent was sent because a client is silent, and the daemon has
+  /// not responded to this command. reaction_covers_silence() returns true if the response to this command
+  /// also covers the latest silence of a client.
+  [[nodiscard]] bool reaction_pending() const noexcept { return reaction_id_.has_value(); }
+  [[nodiscard]] bool reaction_covers_silence() const noexcept {
+    return reaction_id_ && reaction_covers_silence_;
+  }
 
  private:
-  void take_counter(Master& master, Nanoseconds now);
+  void process_counter(ClientConnection& connection, Nanoseconds now);
   void execute(const Handshake::Entry& entry, Nanoseconds now);
-  void notice_silence(Nanoseconds now);
-  void react(Nanoseconds now);
+  void check_heartbeat(Nanoseconds now);
+  void send_reaction(Nanoseconds now);
   std::uint64_t send(nlohmann::ordered_json request);
-  void show(const Master& master, Nanoseconds now);
+  void write_registers(const ClientConnection& connection, Nanoseconds now);
 
   const Settings& settings_;
   modbus::Registers registers_;
-  Masters masters_;
+  ClientConnections connections_;
   Handshake handshake_;
-  MasterWatch watch_;
+  HeartbeatMonitor heartbeat_monitor_;
   bool connected_ = false;
-  Nanoseconds heard_at_ = 0;  // time at which the daemon last sent its status
+  Nanoseconds last_status_at_ = 0;  // time at which the daemon last sent its status
   std::vector<nlohmann::ordered_json> to_daemon_;
   std::uint64_t last_id_ = 0;
-  std::map<std::uint64_t, std::uint16_t> asked_;  // counter of each command that has no response, by request
-                                                  // id
-  std::optional<std::uint64_t> reaction_;  // request id of the stop or vent command that was sent because of
-                                           // a silent client; nullopt: no such command waits for a response
-  bool reaction_confirms_ = false;         // true: no client has become silent since the pending stop
-                                           // or vent was sent
-  Nanoseconds reacted_at_ = 0;
+  std::map<std::uint64_t, std::uint16_t> pending_commands_;  // counter of each command that has no response,
+                                                             // by request id
+  // Request id of the stop or vent command that was sent because of a silent client; nullopt: no such command
+  // waits for a response.
+  std::optional<std::uint64_t> reaction_id_;
+  bool reaction_covers_silence_ = false;  // true: no client has become silent since the pending stop
+                                          // or vent was sent
+  Nanoseconds reaction_sent_at_ = 0;
 };
 
 }  // namespace softgrip::plc

@@ -19,13 +19,13 @@ bool Handshake::write(Cursor& cursor, const Entry& entry) noexcept {
     return false;
   }
   const bool follows = ahead(entry.counter) == 1 && cursor.at == newest().counter;
-  const bool halts = entry.command.halts();
-  if (!follows || (waiting_ && !halts)) {
+  const bool is_stop_or_vent = entry.command.is_stop_or_vent();
+  if (!follows || (waiting_ && !is_stop_or_vent)) {
     cursor.refused = true;
     return false;
   }
   cursor.at = entry.counter;
-  if (executing_ && !halts) {
+  if (executing_ && !is_stop_or_vent) {
     waiting_ = entry;
     return false;
   }
@@ -78,7 +78,7 @@ void Handshake::finish(std::uint16_t counter, Outcome outcome, Reason reason) no
   reason_ = reason;
 }
 
-void Handshake::lose() noexcept {
+void Handshake::on_daemon_lost() noexcept {
   if (executing_) finish(executing_->counter, Outcome::unknown, Reason::no_daemon);
 }
 

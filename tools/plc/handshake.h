@@ -18,7 +18,9 @@ struct Command {
 
   [[nodiscard]] bool is(CommandCode kind) const noexcept { return code == static_cast<std::uint16_t>(kind); }
   /// Returns true for stop and vent, which are executed even if another command is in progress.
-  [[nodiscard]] bool halts() const noexcept { return is(CommandCode::stop) || is(CommandCode::vent); }
+  [[nodiscard]] bool is_stop_or_vent() const noexcept {
+    return is(CommandCode::stop) || is(CommandCode::vent);
+  }
   friend auto operator<=>(const Command&, const Command&) = default;
 };
 
@@ -63,7 +65,7 @@ class Handshake {
   void finish(std::uint16_t counter, Outcome outcome, Reason reason = Reason::none) noexcept;
   /// Sets the outcome of the command in progress to `unknown`. Must be called when the connection to the
   /// daemon is lost.
-  void lose() noexcept;
+  void on_daemon_lost() noexcept;
 
   /// Returns `counter` minus the newest counter, from -32768 to 32767. Returns 0 before the first counter.
   [[nodiscard]] int ahead(std::uint16_t counter) const noexcept;
@@ -71,7 +73,7 @@ class Handshake {
   [[nodiscard]] std::uint16_t done_counter() const noexcept { return done_ ? done_->counter : 0; }
   [[nodiscard]] Outcome outcome() const noexcept { return executing_ ? Outcome::executing : outcome_; }
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
-  [[nodiscard]] bool waits() const noexcept { return waiting_.has_value(); }
+  [[nodiscard]] bool has_waiting() const noexcept { return waiting_.has_value(); }
   /// Return the last command that has ended, the command in progress, and the waiting command.
   [[nodiscard]] const std::optional<Entry>& done() const noexcept { return done_; }
   [[nodiscard]] const std::optional<Entry>& executing() const noexcept { return executing_; }

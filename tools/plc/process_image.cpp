@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 6> results{"-",         "HOLDING",  "NO P
                                                   "PART LOST", "RELEASED", "ERROR"};
 
 template <std::size_t N>
-std::uint16_t place_of(const std::array<std::string_view, N>& words, std::string_view word) {
+std::uint16_t index_of(const std::array<std::string_view, N>& words, std::string_view word) {
   const auto found = std::find(words.begin(), words.end(), word);
   return found == words.end() ? 0 : static_cast<std::uint16_t>(found - words.begin());
 }
@@ -46,7 +46,7 @@ std::uint16_t number_in(std::string_view code) {
 
 /// Returns the quantity that a command register requests; nullopt if the register contains no value, so that
 /// the default of the sequence applies.
-std::optional<double> asked(std::uint16_t counts, double resolution) {
+std::optional<double> requested_value(std::uint16_t counts, double resolution) {
   if (counts == no_value) return std::nullopt;
   return static_cast<std::int16_t>(counts) * resolution;
 }
@@ -82,7 +82,7 @@ std::uint16_t counts_of(const Json& value, double resolution) {
   return static_cast<std::uint16_t>(static_cast<std::int16_t>(counts));
 }
 
-void show_status(const Json& status, const RegisterMap& map, modbus::Registers& to) {
+void write_status(const Json& status, const RegisterMap& map, modbus::Registers& to) {
   const Json& sequence = status["sequence"];
   const Json& fault = status["fault"];
   const Json& channels = status["channels"];
@@ -90,7 +90,7 @@ void show_status(const Json& status, const RegisterMap& map, modbus::Registers& 
   to.set_holding(map.at(Name::state),
                  static_cast<std::uint16_t>(
                      states.find(status["state"].get<std::string>()).value_or(StateCode::no_daemon)));
-  to.set_holding(map.at(Name::result), place_of(results, status["result"].get<std::string>()));
+  to.set_holding(map.at(Name::result), index_of(results, status["result"].get<std::string>()));
   to.set_holding(map.at(Name::fault), fault.is_object() ? number_in(fault["code"].get<std::string>()) : 0);
   to.set_holding(map.at(Name::step),
                  runs ? static_cast<std::uint16_t>(sequence["step"].get<std::uint16_t>() + 1) : 0);
@@ -101,7 +101,7 @@ void show_status(const Json& status, const RegisterMap& map, modbus::Registers& 
     const auto quantity = [&](Name name, const char* key) {
       to.set_holding(map.at(name, i), counts_of(channel[key], map.of_one(name)));
     };
-    to.set_holding(map.at(Name::finger_result, i), place_of(results, channel["result"].get<std::string>()));
+    to.set_holding(map.at(Name::finger_result, i), index_of(results, channel["result"].get<std::string>()));
     quantity(Name::finger_displacement, "displacement_mm");
     quantity(Name::finger_pressure, "pressure_kpa");
     quantity(Name::finger_command, "command_kpa");
@@ -110,7 +110,7 @@ void show_status(const Json& status, const RegisterMap& map, modbus::Registers& 
   }
 }
 
-void show_no_daemon(const RegisterMap& map, modbus::Registers& to) {
+void write_no_daemon(const RegisterMap& map, modbus::Registers& to) {
   for (const RegisterInfo& info : registers()) {
     for (std::size_t i = 0; info.block == Block::finger && i < map.most_fingers; ++i)
       to.set_holding(map.at(info.name, i), info.unit.empty() ? 0 : no_value);
@@ -139,7 +139,7 @@ tl::expected<Json, Reason> request_of(const Settings& settings, const Command& c
   request["sequence"] = recipe->sequence;
   Json parameters = Json::object();
   const auto choose = [&](const std::string& parameter, Name name, std::uint16_t counts) {
-    const auto value = asked(counts, settings.registers.of_one(name));
+    const auto value = requested_value(counts, settings.registers.of_one(name));
     if (!parameter.empty() && value) parameters[parameter] = *value;
   };
   choose(recipe->squeeze, Name::squeeze, command.squeeze);

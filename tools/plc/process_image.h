@@ -24,10 +24,10 @@ namespace softgrip::plc {
 [[nodiscard]] std::uint16_t counts_of(const nlohmann::ordered_json& value, double resolution);
 
 /// Writes a status of the daemon into the registers.
-void show_status(const nlohmann::ordered_json& status, const RegisterMap& map, modbus::Registers& registers);
+void write_status(const nlohmann::ordered_json& status, const RegisterMap& map, modbus::Registers& registers);
 /// Writes the registers for the time in which no daemon is connected: the state is no_daemon, and results and
 /// readings are unknown.
-void show_no_daemon(const RegisterMap& map, modbus::Registers& registers);
+void write_no_daemon(const RegisterMap& map, modbus::Registers& registers);
 
 /// Returns the request that must be sent to the daemon for a command. If the command is refused, returns the
 /// reason.

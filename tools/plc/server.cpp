@@ -40,32 +40,32 @@ void Server::run() {
     const auto signal = polled.add(signals_.get());
     const auto listener = polled.add(acceptor_.descriptor(clock_.now()));
     polled.add(daemon_.descriptor());
-    for (Line& line : lines_)
-      line.poll_entry = polled.add(line.connection.descriptor(), true, line.connection.blocked());
-    const auto outcome = polled.wait(Gateway::longest_pause);
-    if (outcome == net::PollSet::Outcome::too_many_descriptors && give_up_line()) continue;
+    for (Session& session : sessions_)
+      session.poll_entry = polled.add(session.connection.descriptor(), true, session.connection.blocked());
+    const auto outcome = polled.wait(Gateway::max_update_period);
+    if (outcome == net::PollSet::Outcome::too_many_descriptors && close_newest_session()) continue;
     if (outcome != net::PollSet::Outcome::done || polled[signal]) return;
     const Nanoseconds now = clock_.now();
-    if (daemon_.connect(now)) gateway_.daemon_came(now);
-    const auto take = [&](const nlohmann::ordered_json& line) { gateway_.daemon_said(line, now); };
-    if (daemon_ && !daemon_.hear(take)) gateway_.daemon_went();
-    gateway_.look_after(now);
-    for (Line& line : lines_) {
-      if (!serve(line, polled[line.poll_entry], now)) gateway_.masters().leave(line.master);
+    if (daemon_.connect(now)) gateway_.on_daemon_connected(now);
+    const auto take = [&](const nlohmann::ordered_json& line) { gateway_.on_daemon_line(line, now); };
+    if (daemon_ && !daemon_.hear(take)) gateway_.on_daemon_disconnected();
+    gateway_.update(now);
+    for (Session& session : sessions_) {
+      if (!serve(session, polled[session.poll_entry], now)) gateway_.connections().remove(session.id);
     }
     if (polled[listener]) accept(now);
-    std::erase_if(lines_, [&](const Line& line) { return !gateway_.masters().has(line.master); });
+    std::erase_if(sessions_, [&](const Session& session) { return !gateway_.connections().has(session.id); });
     if (!daemon_) continue;
-    for (const auto& line : gateway_.lines_to_daemon()) daemon_.send(line);
+    for (const auto& line : gateway_.take_lines_to_daemon()) daemon_.send(line);
   }
 }
 
 /// Closes the newest connection. Must be called if poll() fails because it would watch more descriptors than
 /// the process may have.
-bool Server::give_up_line() {
-  if (lines_.empty()) return false;
-  gateway_.masters().leave(lines_.back().master);
-  lines_.pop_back();
+bool Server::close_newest_session() {
+  if (sessions_.empty()) return false;
+  gateway_.connections().remove(sessions_.back().id);
+  sessions_.pop_back();
   return true;
 }
 
@@ -75,20 +75,20 @@ void Server::accept(Nanoseconds now) {
   const std::string address = address_of(socket.get());
   const std::vector<std::string>& allow = settings_.allow;
   if (std::find(allow.begin(), allow.end(), address) == allow.end()) return;
-  if (const auto master = gateway_.masters().admit(address, now))
-    lines_.push_back({*master, modbus::Connection(std::move(socket))});
+  if (const auto id = gateway_.connections().admit(address, now))
+    sessions_.push_back({*id, modbus::Connection(std::move(socket))});
 }
 
-bool Server::serve(Line& line, net::PollSet::Events events, Nanoseconds now) {
-  Master* const master = gateway_.masters().find(line.master);
-  if (master == nullptr) return false;
+bool Server::serve(Session& session, net::PollSet::Events events, Nanoseconds now) {
+  ClientConnection* const client = gateway_.connections().find(session.id);
+  if (client == nullptr) return false;
   bool open = true;
   if (events.input() || events.hangup_or_error()) {
-    open = line.connection.receive(
-        [&](const modbus::Request& request) { return gateway_.serve(line.master, request, now); });
-    master->half = line.connection.half();
+    open = session.connection.receive(
+        [&](const modbus::Request& request) { return gateway_.serve(session.id, request, now); });
+    client->partial_request = session.connection.half();
   }
-  return open && line.connection.send_due(modbus::Clock::now());
+  return open && session.connection.send_due(modbus::Clock::now());
 }
 
 }  // namespace softgrip::plc

@@ -23,17 +23,17 @@ class Server {
   void run();
 
  private:
-  struct Line {
-    Masters::Id master;
+  struct Session {
+    ClientConnections::Id id;
     modbus::Connection connection;
     net::PollSet::Entry poll_entry = {};
   };
   /// Closes one connection, because the process uses more descriptors than it may have. Returns false if
   /// there is no connection to close.
-  [[nodiscard]] bool give_up_line();
+  [[nodiscard]] bool close_newest_session();
   void accept(Nanoseconds now);
   /// Processes the events of a connection. Returns false if the connection has ended or must be closed.
-  [[nodiscard]] bool serve(Line& line, net::PollSet::Events events, Nanoseconds now);
+  [[nodiscard]] bool serve(Session& session, net::PollSet::Events events, Nanoseconds now);
 
   const Settings& settings_;
   Gateway& gateway_;
@@ -41,7 +41,7 @@ class Server {
   net::Acceptor acceptor_;
   Descriptor signals_;
   MonotonicClock clock_;
-  std::list<Line> lines_;
+  std::list<Session> sessions_;
 };
 
 /// Returns the numeric address of the other end of a socket. An IPv4 address in IPv6 notation is returned in

@@ -31,10 +31,10 @@ class GatewayTest : public ::testing::Test {
     document::Problems problems;
     return *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   }
-  Masters::Id come(const std::string& address = "127.0.0.1") {
-    return *gateway_.masters().admit(address, now_);
+  ClientConnections::Id connect(const std::string& address = "127.0.0.1") {
+    return *gateway_.connections().admit(address, now_);
   }
-  void write(Masters::Id id, Name first, const std::vector<std::uint16_t>& values) {
+  void write(ClientConnections::Id id, Name first, const std::vector<std::uint16_t>& values) {
     modbus::Request request{1, 1, {16}};
     modbus::append_word(request.pdu, settings_.registers.at(first));
     modbus::append_word(request.pdu, static_cast<std::uint16_t>(values.size()));
@@ -44,10 +44,10 @@ class GatewayTest : public ::testing::Test {
   }
   void write(Name name, std::uint16_t value) { write(plc_, name, {value}); }
   /// Writes a command and its counter in one block of registers, as a master does.
-  void put(Masters::Id id, std::uint16_t counter, CommandCode command) {
+  void put(ClientConnections::Id id, std::uint16_t counter, CommandCode command) {
     write(id, Name::command_counter, {counter, static_cast<std::uint16_t>(command), 1});
   }
-  std::uint16_t read(Masters::Id id, Name name) {
+  std::uint16_t read(ClientConnections::Id id, Name name) {
     modbus::Request request{1, 1, {3}};
     modbus::append_word(request.pdu, settings_.registers.at(name));
     modbus::append_word(request.pdu, 1);
@@ -57,52 +57,52 @@ class GatewayTest : public ::testing::Test {
   }
   std::uint16_t read(Name name) { return read(plc_, name); }
   /// Returns the outcome and the reason that the gateway shows on this connection.
-  std::pair<Outcome, Reason> end_of(Masters::Id id) {
+  std::pair<Outcome, Reason> end_of(ClientConnections::Id id) {
     return {static_cast<Outcome>(read(id, Name::outcome)), static_cast<Reason>(read(id, Name::reason))};
   }
 
   void daemon_comes() {
-    gateway_.daemon_came(now_);
+    gateway_.on_daemon_connected(now_);
     EXPECT_EQ(sent(), (std::vector<std::string>{"hello", "watch"}));
   }
   /// Returns the commands that the gateway has sent to the daemon since the last call.
   std::vector<std::string> sent() {
     std::vector<std::string> commands;
-    for (const Json& line : gateway_.lines_to_daemon()) {
+    for (const Json& line : gateway_.take_lines_to_daemon()) {
       commands.push_back(line["command"]);
       last_id_ = line["id"];
     }
     return commands;
   }
-  void accept() { gateway_.daemon_said({{"id", last_id_}, {"ok", true}}, now_); }
+  void accept() { gateway_.on_daemon_line({{"id", last_id_}, {"ok", true}}, now_); }
   void refuse(const Json& error) {
-    gateway_.daemon_said({{"id", last_id_}, {"ok", false}, {"error", error}}, now_);
+    gateway_.on_daemon_line({{"id", last_id_}, {"ok", false}, {"error", error}}, now_);
   }
   void say_status() {
-    gateway_.daemon_said(Json::parse(R"({"id": 2, "watch": {"state": "idle", "result": "-", "fault": null,
+    gateway_.on_daemon_line(Json::parse(R"({"id": 2, "watch": {"state": "idle", "result": "-", "fault": null,
       "sequence": null, "channels": []}})"),
-                         now_);
+                            now_);
   }
   /// Advances the time in steps, as the server does, and calls the gateway in each step. If `daemon_speaks`
   /// is true, the daemon sends its state in each step.
   void pass(double duration_s, bool daemon_speaks = true) {
     for (const Nanoseconds end = now_ + nanoseconds(duration_s); now_ < end;) {
-      now_ += Gateway::longest_pause;
+      now_ += Gateway::max_update_period;
       if (daemon_speaks) say_status();
-      gateway_.look_after(now_);
+      gateway_.update(now_);
     }
   }
 
   Settings settings_ = shipped();
   Gateway gateway_{settings_};
   Nanoseconds now_ = 100 * ns_per_s;
-  Masters::Id plc_ = come();
+  ClientConnections::Id plc_ = connect();
   std::uint64_t last_id_ = 0;
 };
 
 TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
   write(Name::command_counter, 0);
-  gateway_.look_after(now_);
+  gateway_.update(now_);
   EXPECT_TRUE(sent().empty());
   write(Name::command, 3);
   EXPECT_EQ(read(Name::outcome), static_cast<int>(Outcome::none));
@@ -135,7 +135,7 @@ TEST_F(GatewayTest, TheHeartbeatRegisterCountsTenPerSecond) {
 
 TEST_F(GatewayTest, AnOldBlockOnASecondConnectionIsRefused) {
   daemon_comes();
-  const Masters::Id second = come();
+  const ClientConnections::Id second = connect();
   put(plc_, 0, CommandCode::none);
   put(plc_, 1, CommandCode::start);
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
@@ -158,7 +158,7 @@ TEST_F(GatewayTest, AnOldBlockOnASecondConnectionIsRefused) {
 
 TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother) {
   daemon_comes();
-  const Masters::Id second = come();
+  const ClientConnections::Id second = connect();
   put(plc_, 0, CommandCode::none);
   put(second, 1, CommandCode::start);  // refused, because this connection has not written the newest counter
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
@@ -172,7 +172,7 @@ TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother)
 
 TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   daemon_comes();
-  const Masters::Id second = come();
+  const ClientConnections::Id second = connect();
   put(plc_, 0, CommandCode::none);
   put(second, 0, CommandCode::none);
   put(second, 2, CommandCode::vent);  // the vent is refused, because the start with counter 1 has not arrived
@@ -187,7 +187,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
 
 TEST_F(GatewayTest, RegistersOfTwoClientsAreNotCombinedIntoOneCommand) {
   daemon_comes();
-  const Masters::Id second = come("127.0.0.2");
+  const ClientConnections::Id second = connect("127.0.0.2");
   put(plc_, 0, CommandCode::none);
   write(Name::command, 3);               // the first master prepares a vent without a new counter
   write(second, Name::command, {1, 1});  // the second master prepares a start without a new counter
@@ -197,13 +197,13 @@ TEST_F(GatewayTest, RegistersOfTwoClientsAreNotCombinedIntoOneCommand) {
 }
 
 TEST_F(GatewayTest, AWriteDropsConnectionsWithIncompleteRequests) {
-  const Masters::Id half = come();
-  gateway_.masters().find(half)->half = true;
+  const ClientConnections::Id partial = connect();
+  gateway_.connections().find(partial)->partial_request = true;
   static_cast<void>(read(Name::state));
-  EXPECT_TRUE(gateway_.masters().has(half));
+  EXPECT_TRUE(gateway_.connections().has(partial));
   write(Name::command, 3);
-  EXPECT_FALSE(gateway_.masters().has(half));
-  EXPECT_TRUE(gateway_.masters().has(plc_));
+  EXPECT_FALSE(gateway_.connections().has(partial));
+  EXPECT_TRUE(gateway_.connections().has(plc_));
 }
 
 TEST_F(GatewayTest, AHeartbeatTimeOutStopsAndForbidsStartsUntilConfirmed) {
@@ -216,7 +216,7 @@ TEST_F(GatewayTest, AHeartbeatTimeOutStopsAndForbidsStartsUntilConfirmed) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
   write(Name::command_counter, 0);
   put(plc_, 1, CommandCode::start);
-  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::master_silent));
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::client_silent));
   write(Name::master_heartbeat, 6);
   EXPECT_EQ(read(Name::master), 2);  // the master counts as silent until the daemon has confirmed the stop
   accept();
@@ -227,7 +227,7 @@ TEST_F(GatewayTest, AHeartbeatTimeOutStopsAndForbidsStartsUntilConfirmed) {
 
 TEST_F(GatewayTest, ConstantValuesOnTwoConnectionsAreNoHeartbeat) {
   daemon_comes();
-  const Masters::Id second = come();
+  const ClientConnections::Id second = connect();
   write(plc_, Name::master_heartbeat, {5});
   write(second, Name::master_heartbeat, {9});
   for (int i = 0; i < 30; ++i) {
@@ -242,13 +242,13 @@ TEST_F(GatewayTest, ConstantValuesOnTwoConnectionsAreNoHeartbeat) {
 TEST_F(GatewayTest, RepeatsTheStopUntilADaemonConfirmsTheStop) {
   daemon_comes();
   write(Name::master_heartbeat, 5);
-  gateway_.daemon_went();  // the daemon and the master become silent at the same time
+  gateway_.on_daemon_disconnected();  // the daemon and the master become silent at the same time
   pass(settings_.silence_s + 0.1);
   EXPECT_TRUE(sent().empty());
   daemon_comes();
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  gateway_.daemon_went();  // the connection ends before the daemon has responded to the stop
+  gateway_.on_daemon_disconnected();  // the connection ends before the daemon has responded to the stop
   pass(1);
   daemon_comes();
   pass(0.1);
@@ -260,7 +260,7 @@ TEST_F(GatewayTest, RepeatsTheStopUntilADaemonConfirmsTheStop) {
                                                                   // confirms the stop
   pass(1);
   EXPECT_TRUE(sent().empty());
-  EXPECT_FALSE(gateway_.watch().owes());
+  EXPECT_FALSE(gateway_.heartbeat_monitor().stop_required());
 }
 
 TEST_F(GatewayTest, AReplyToAnEarlierStopDoesNotConfirmALaterStop) {
@@ -273,11 +273,11 @@ TEST_F(GatewayTest, AReplyToAnEarlierStopDoesNotConfirmALaterStop) {
   EXPECT_TRUE(sent().empty());  // the gateway sends no second stop while the response to the first one is
                                 // missing
   accept();
-  EXPECT_TRUE(gateway_.watch().owes());
+  EXPECT_TRUE(gateway_.heartbeat_monitor().stop_required());
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
   accept();
-  EXPECT_FALSE(gateway_.watch().owes());
+  EXPECT_FALSE(gateway_.heartbeat_monitor().stop_required());
 }
 
 TEST_F(GatewayTest, RepeatsAReleaseThatAStartingDaemonRefuses) {
@@ -345,7 +345,7 @@ TEST_F(GatewayTest, AQueuedCommandIsSentAfterTheExecutingOne) {
   put(plc_, 2, CommandCode::start);
   EXPECT_EQ(sent(), std::vector<std::string>{"release"});
   accept();
-  gateway_.look_after(now_);
+  gateway_.update(now_);
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
@@ -369,7 +369,7 @@ TEST_F(GatewayTest, EveryAcceptedReplyIsProcessedWithoutException) {
     for (const Json& bad : tools::testing::damaged(good)) {
       const auto parsed = tools::parse_reply(bad.dump());
       if (parsed) {
-        EXPECT_NO_THROW(gateway_.daemon_said(*parsed, now_)) << bad;
+        EXPECT_NO_THROW(gateway_.on_daemon_line(*parsed, now_)) << bad;
       }
     }
   }

@@ -72,7 +72,7 @@ struct Frame {
 /// request.
 struct Wire {
   std::size_t plc = 0;
-  Masters::Id id = 0;
+  ClientConnections::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Frame> flying;
   bool half = false;                       // true: the gateway has received the first half of the pending
@@ -92,7 +92,7 @@ struct Plc {
   std::uint16_t heard = 0;  // the last heartbeat of this master that the gateway received
   // The connection on which the gateway has responded to the present block of the master. On this connection,
   // the master reads the outcome of its command.
-  Masters::Id answered_on = 0;
+  ClientConnections::Id answered_on = 0;
 };
 
 /// A command that a master has requested, and the progress of this command.
@@ -151,7 +151,7 @@ struct World {
   /// Transfers the lines of the gateway to the daemon immediately. `cause` is the block of registers that
   /// made the gateway send these lines.
   void carry(const std::optional<Frame>& cause) {
-    for (const Json& line : gateway->lines_to_daemon()) {
+    for (const Json& line : gateway->take_lines_to_daemon()) {
       const std::string command = line["command"];
       if (command == "start" || command == "vent") executes(command, cause);
       if (command == "stop") {
@@ -178,18 +178,18 @@ struct World {
   }
 
   void turn() {
-    gateway->look_after(now);
+    gateway->update(now);
     carry(waiting);
     drop_closed();
   }
   void drop_closed() {
-    std::erase_if(wires, [&](const Wire& wire) { return !gateway->masters().has(wire.id); });
+    std::erase_if(wires, [&](const Wire& wire) { return !gateway->connections().has(wire.id); });
   }
 
   // Actions of a master. The earlier connections of the master remain open, because the gateway cannot
   // distinguish a dead connection from a slow one.
   bool connect(std::size_t plc) {
-    const auto id = gateway->masters().admit(address_of(plc), now);
+    const auto id = gateway->connections().admit(address_of(plc), now);
     drop_closed();
     if (id) wires.push_back({plc, *id, {}, {}, false, {}});
     return id.has_value();
@@ -213,7 +213,7 @@ struct World {
     wire.stream.append(std::span(bytes).first(bytes.size() / 2));
     wire.half = true;
     check(!wire.stream.next().has_value(), "an incomplete request is accepted as a complete request");
-    gateway->masters().find(wire.id)->half = wire.stream.half();
+    gateway->connections().find(wire.id)->partial_request = wire.stream.half();
   }
   void deliver(std::size_t index) {
     Wire& wire = wires[index];
@@ -222,12 +222,12 @@ struct World {
     wire.stream.append(std::span(bytes).subspan(wire.half ? bytes.size() / 2 : 0));
     wire.half = false;
     const auto request = wire.stream.next();
-    const bool waited = gateway->handshake().waits();
+    const bool waited = gateway->handshake().has_waiting();
     static_cast<void>(gateway->serve(wire.id, *request, now));
-    gateway->masters().find(wire.id)->half = wire.stream.half();
+    gateway->connections().find(wire.id)->partial_request = wire.stream.half();
     carry(frame);
-    if (!waited && gateway->handshake().waits()) waiting = frame;
-    if (!gateway->handshake().waits()) waiting.reset();
+    if (!waited && gateway->handshake().has_waiting()) waiting = frame;
+    if (!gateway->handshake().has_waiting()) waiting.reset();
     Plc& master = masters[wire.plc];
     if (frame.words[6] != wire.heartbeat.value_or(master.heard)) {
       watched = true;
@@ -241,7 +241,7 @@ struct World {
       master.progress = Progress::ready;
     drop_closed();
   }
-  std::array<std::uint16_t, 3> read(Masters::Id id) {
+  std::array<std::uint16_t, 3> read(ClientConnections::Id id) {
     modbus::Request request{1, 1, {3}};
     modbus::append_word(request.pdu, settings->registers.at(Name::done_counter));
     modbus::append_word(request.pdu, 3);
@@ -296,14 +296,14 @@ struct World {
   // The functions below are actions of the simulated daemon.
   void daemon_starts() {
     runs = true;
-    gateway->daemon_came(now);
+    gateway->on_daemon_connected(now);
     carry({});
   }
   void daemon_dies() {
     runs = paused = false;
     lines.clear();
     answers.clear();
-    gateway->daemon_went();
+    gateway->on_daemon_disconnected();
   }
   void daemon_takes(bool busy) {
     const Line line = lines.front();
@@ -320,14 +320,14 @@ struct World {
     answers.push_back({{"id", line.id}, {"ok", true}});
   }
   void answer_arrives() {
-    gateway->daemon_said(answers.front(), now);
+    gateway->on_daemon_line(answers.front(), now);
     answers.pop_front();
   }
   void daemon_says_state() {
     static const Json state =
         Json::parse(R"({"id": 2, "watch": {"state": "idle", "result": "-", "fault": null,
       "sequence": null, "channels": []}})");
-    gateway->daemon_said(state, now);
+    gateway->on_daemon_line(state, now);
   }
 
   void gateway_dies() {
@@ -342,7 +342,7 @@ struct World {
     watched = owed = stopped_since_beat = false;
     beat_steps = 0;
     if (runs) {
-      gateway->daemon_came(now);
+      gateway->on_daemon_connected(now);
       carry({});
     }
   }
@@ -389,28 +389,29 @@ std::string World::key() const {
     key << entry.has_value();
     if (entry) key << entry->counter << entry->command.code << static_cast<int>(entry->refusal);
   }
-  std::vector<Masters::Id> ids;
+  std::vector<ClientConnections::Id> ids;
   std::vector<Nanoseconds> asked;
-  for (const auto& [id, master] : gateway->masters().all()) {
+  for (const auto& [id, master] : gateway->connections().all()) {
     ids.push_back(id);
-    asked.push_back(master.asked_at);
+    asked.push_back(master.last_request_at);
   }
   std::sort(asked.begin(), asked.end());
   const auto place = [&](const auto& in, auto value) {
     return std::find(in.begin(), in.end(), value) - in.begin();
   };
-  for (const auto& [id, master] : gateway->masters().all()) {
-    key << master.asked << master.half << master.fenced << place(asked, master.asked_at)
-        << (now - master.asked_at >= step);
-    for (const std::uint16_t word : master.written) key << word;
+  for (const auto& [id, master] : gateway->connections().all()) {
+    key << master.has_requested << master.partial_request << master.start_blocked
+        << place(asked, master.last_request_at) << (now - master.last_request_at >= step);
+    for (const std::uint16_t word : master.registers) key << word;
     key << master.heartbeat << master.cursor.at << master.cursor.refused;
   }
-  for (const auto& [address, past] : gateway->masters().past())
+  for (const auto& [address, past] : gateway->connections().history())
     key << (address == "10.0.0.1") << past.at << past.heartbeat;
-  key << gateway->watch().watched() << gateway->watch().silent(now) << gateway->watch().silent(now + step)
-      << gateway->watch().owes() << gateway->hears_daemon(now) << gateway->reacts()
-      << gateway->reaction_confirms() << (reacted_at == now);
-  for (const std::uint16_t counter : gateway->unanswered()) key << counter;
+  key << gateway->heartbeat_monitor().active() << gateway->heartbeat_monitor().silent(now)
+      << gateway->heartbeat_monitor().silent(now + step) << gateway->heartbeat_monitor().stop_required()
+      << gateway->daemon_responds(now) << gateway->reaction_pending() << gateway->reaction_covers_silence()
+      << (reacted_at == now);
+  for (const std::uint16_t counter : gateway->pending_counters()) key << counter;
   for (const Plc& master : masters)
     key << place(ids, master.answered_on) << master.alive << static_cast<int>(master.progress)
         << master.counter << master.code << master.command << master.heartbeat << master.heard;
@@ -437,7 +438,7 @@ std::string World::lost_for_good() const {
   world.left.time = true;
   const auto settle = [&world] {
     for (int i = 0; i < 4; ++i) {
-      world.now += Gateway::longest_pause;
+      world.now += Gateway::max_update_period;
       while (!world.lines.empty()) world.daemon_takes(false);
       while (!world.answers.empty()) world.answer_arrives();
       world.daemon_says_state();
@@ -447,7 +448,8 @@ std::string World::lost_for_good() const {
   if (!world.runs) world.daemon_starts();
   world.paused = false;
   settle();
-  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silent master is lost";
+  if (world.owed || world.gateway->heartbeat_monitor().stop_required())
+    return "the reaction to a silent master is lost";
   // The programs of all masters stop, but their connections repeat the last blocks.
   for (Plc& master : world.masters) master.alive = false;
   for (int i = 0; i < 2 * silent_steps; ++i) {
@@ -458,11 +460,12 @@ std::string World::lost_for_good() const {
     world.pass();
     settle();
   }
-  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silent master is lost";
+  if (world.owed || world.gateway->heartbeat_monitor().stop_required())
+    return "the reaction to a silent master is lost";
   if (!world.broken.empty()) return world.broken;
 
   if (!world.connect(0)) return "a master cannot connect: all connections are in use";
-  const Masters::Id id = world.wires.back().id;
+  const ClientConnections::Id id = world.wires.back().id;
   Plc& master = world.masters[0];
   master.alive = true;
   master.progress = Progress::begins;

@@ -133,12 +133,12 @@ TEST(Handshake, OnlyStopAndVentSupersedeAnExecutingCommand) {
   EXPECT_FALSE(handshake.write(plc, {0, none}));
   EXPECT_TRUE(handshake.write(plc, {1, start}));
   EXPECT_FALSE(handshake.write(plc, {2, release}));
-  EXPECT_TRUE(handshake.waits());
+  EXPECT_TRUE(handshake.has_waiting());
   EXPECT_FALSE(handshake.take_waiting());
   EXPECT_FALSE(handshake.write(plc, {3, release}));  // refused, because another command already waits
   EXPECT_TRUE(plc.refused);
   EXPECT_TRUE(handshake.write(plc, {3, vent}));
-  EXPECT_FALSE(handshake.waits());
+  EXPECT_FALSE(handshake.has_waiting());
   handshake.finish(1, Outcome::accepted);  // not reported, because a later command has superseded this
                                            // command
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
@@ -169,19 +169,19 @@ TEST(Handshake, AQueuedCommandIsRefusedAfterAnInternalStop) {
   EXPECT_FALSE(handshake.write(plc, {0, none}));
   EXPECT_TRUE(handshake.write(plc, {1, release}));
   EXPECT_FALSE(handshake.write(plc, {2, start}));
-  handshake.refuse_waiting(Reason::master_silent);
+  handshake.refuse_waiting(Reason::client_silent);
   handshake.finish(1, Outcome::accepted);
-  EXPECT_EQ(handshake.take_waiting()->refusal, Reason::master_silent);
+  EXPECT_EQ(handshake.take_waiting()->refusal, Reason::client_silent);
 }
 
 TEST(Handshake, ACommandIsUnknownAndNotRepeatedAfterADaemonLoss) {
   Handshake handshake;
   Cursor plc;
   EXPECT_FALSE(handshake.write(plc, {0, none}));
-  handshake.lose();
+  handshake.on_daemon_lost();
   EXPECT_EQ(handshake.outcome(), Outcome::none);
   EXPECT_TRUE(handshake.write(plc, {1, start}));
-  handshake.lose();
+  handshake.on_daemon_lost();
   EXPECT_EQ(handshake.outcome(), Outcome::unknown);
   EXPECT_EQ(handshake.done_counter(), 1);
   EXPECT_FALSE(handshake.write(plc, {1, start}));

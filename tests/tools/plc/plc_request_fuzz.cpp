@@ -40,7 +40,8 @@ void check(const modbus::Request& request, const modbus::Reply& reply) {
 }
 
 /// Returns the value of a register that the gateway writes. Reads this register with a separate request.
-std::uint16_t read(plc::Gateway& gateway, plc::Masters::Id id, std::uint16_t address, Nanoseconds now) {
+std::uint16_t read(plc::Gateway& gateway, plc::ClientConnections::Id id, std::uint16_t address,
+                   Nanoseconds now) {
   modbus::Request request{0, 1, {3}};
   modbus::append_word(request.pdu, address);
   modbus::append_word(request.pdu, 1);
@@ -55,8 +56,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using plc::Name;
   static const plc::Settings settings = shipped();
   plc::Gateway gateway(settings);
-  const auto master = gateway.masters().admit("127.0.0.1", 0);
-  const auto other = gateway.masters().admit("127.0.0.1", 0);
+  const auto master = gateway.connections().admit("127.0.0.1", 0);
+  const auto other = gateway.connections().admit("127.0.0.1", 0);
   require(master && other);
   modbus::RequestStream stream;
   std::span<const std::uint8_t> bytes(data, size);
@@ -75,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             static_cast<plc::Outcome>(read(gateway, reader, settings.registers.at(Name::outcome), now));
         require(outcome == plc::Outcome::none || outcome == plc::Outcome::refused);
       }
-      require(gateway.lines_to_daemon().empty());
+      require(gateway.take_lines_to_daemon().empty());
     }
   }
   return 0;

@@ -40,7 +40,7 @@ Json status() {
 }
 
 TEST_F(ProcessImage, WritesTheStatusToTheRegisters) {
-  show_status(status(), settings_.registers, registers_);
+  write_status(status(), settings_.registers, registers_);
   EXPECT_EQ(value(Name::map_version), version_of_map);
   EXPECT_EQ(value(Name::state), 4);
   EXPECT_EQ(value(Name::result), 3);
@@ -59,8 +59,8 @@ TEST_F(ProcessImage, WritesTheStatusToTheRegisters) {
 }
 
 TEST_F(ProcessImage, ClearsTheRegistersWithoutADaemon) {
-  show_status(status(), settings_.registers, registers_);
-  show_no_daemon(settings_.registers, registers_);
+  write_status(status(), settings_.registers, registers_);
+  write_no_daemon(settings_.registers, registers_);
   EXPECT_EQ(value(Name::state), 0);
   EXPECT_EQ(value(Name::fingers), 0);
   EXPECT_EQ(value(Name::finger_result, 0), 0);
