@@ -152,7 +152,7 @@ void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome) {
   // because its last step can end in the tick before the bus reports the vent.
   if (outcome.sequence_end == control::SequenceEnd::done && outcome.last.state == control::State::faulted)
     outcome.sequence_end = control::SequenceEnd::faulted;
-  if (!one_shot_run.over()) {
+  if (!one_shot_run.finished()) {
     outcome.ending = outcome.sequence_end ? Ending::sequence_ended : Ending::interrupted;
     if (!outcome.sequence_end) outcome.sequence_end = control::SequenceEnd::stopped;
     return;

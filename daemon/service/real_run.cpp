@@ -176,17 +176,17 @@ void RealRun::service_body() {
          .on_closed = [&](ClientId client) { api.on_closed(client); },
          .is_urgent = is_urgent,
          .on_opened = [&](ClientId client, Role role) { api.on_opened(client, role); },
-         .keeps_place = [&](ClientId client) { return api.keeps_place(client); }});
+         .keeps_connection = [&](ClientId client) { return api.keeps_connection(client); }});
   }
   while (!stop_service_.is_set()) {
     service_turns_.add();
     parts_.service.pump();
     if (parts_.one_shot_run) {
       parts_.one_shot_run->step(parts_.service, parts_.clock.now());
-      one_shot_over_.store(parts_.one_shot_run->over());
+      one_shot_over_.store(parts_.one_shot_run->finished());
     }
     const Nanoseconds now = parts_.clock.now();
-    const Nanoseconds next = api.on_time(now);
+    const Nanoseconds next = api.update(now);
     if (server_) {
       server_->poll(now, next);
     } else {

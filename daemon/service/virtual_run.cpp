@@ -39,7 +39,7 @@ Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals) {
     exchange(parts, due + parts.bus_offset());
     if (tick % ticks_per_look != 0) continue;
     look(parts, due);
-    if ((parts.one_shot_run && parts.one_shot_run->over()) || signals.wait(0) != 0) {
+    if ((parts.one_shot_run && parts.one_shot_run->finished()) || signals.wait(0) != 0) {
       due += period;  // the last outputs get a tick of their own, so that no time occurs twice in a recording
       break;
     }

@@ -46,7 +46,7 @@ constexpr std::size_t longest_name = 64;
 SortedJson parse_object(std::string_view line, std::string& problem) {
   std::array<std::vector<std::string>, 2> keys;  // keys of the outer object ([0]) and of the nested object
                                                  // ([1])
-  const auto look = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
+  const auto callback = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
     const bool object = event == SortedJson::parse_event_t::object_start;
     const bool nested = object || event == SortedJson::parse_event_t::array_start;
     const bool expected = object && depth == 1 && !keys[0].empty() && keys[0].back() == nested_key;
@@ -60,7 +60,7 @@ SortedJson parse_object(std::string_view line, std::string& problem) {
     }
     return problem.empty();
   };
-  SortedJson object = SortedJson::parse(line.begin(), line.end(), look, false);
+  SortedJson object = SortedJson::parse(line.begin(), line.end(), callback, false);
   if (problem.empty() && !object.is_object()) problem = "not a JSON object";
   return object;
 }
@@ -240,12 +240,12 @@ tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view l
 std::vector<std::string_view> commands_of(Role role) {
   std::vector<std::string_view> names;
   for (const auto& [name, command] : commands) {
-    if (role == Role::operate || only_looks(command)) names.push_back(name);
+    if (role == Role::operate || is_read_only(command)) names.push_back(name);
   }
   return names;
 }
 
-bool only_looks(Command command) noexcept {
+bool is_read_only(Command command) noexcept {
   switch (command) {
     case Command::start:
     case Command::stop:

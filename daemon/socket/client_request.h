@@ -89,7 +89,7 @@ struct ClientError {
 [[nodiscard]] std::vector<std::string_view> commands_of(Role role);
 /// Returns true for a command that only reads data. Returns false for a command that moves, stops or resets a
 /// part of the rig.
-[[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
+[[nodiscard]] bool is_read_only(ClientRequest::Command command) noexcept;
 
 /// Returns true if the line is a request to stop or to vent.
 [[nodiscard]] bool is_urgent(std::string_view line);

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 /// Largest number of events that one subscriber gets per turn, so that the other subscribers do not wait too
 /// long.
-constexpr std::size_t most_fed = 50;
+constexpr std::size_t max_events_per_turn = 50;
 
 }  // namespace
 
@@ -28,8 +28,8 @@ EventFeed::EventFeed(const EventLog& log, Nanoseconds origin, std::string starte
 
 Json EventFeed::subscribe(ClientId client, const ClientRequest& request) {
   const std::uint64_t newest = log_.newest();
-  const bool of_another = !request.started_at.empty() && request.started_at != started_at_;
-  const std::uint64_t since = of_another ? 0 : std::min(request.since.value_or(newest), newest);
+  const bool is_earlier_run = !request.started_at.empty() && request.started_at != started_at_;
+  const std::uint64_t since = is_earlier_run ? 0 : std::min(request.since.value_or(newest), newest);
   subscriptions_[client] = {request.id, since};
   return {{"since", since}, {"oldest", log_.oldest()}, {"newest", newest}, {"started_at", started_at_}};
 }
@@ -37,24 +37,24 @@ Json EventFeed::subscribe(ClientId client, const ClientRequest& request) {
 Json EventFeed::list(const ClientRequest& request, Nanoseconds now) {
   Json list = Json::array();
   for (const EventEntry& event : log_.since(request.since.value_or(0), request.limit)) {
-    list.push_back(dated(event, now));
+    list.push_back(event_with_time(event, now));
   }
   return {{"events", std::move(list)}, {"newest", log_.newest()}};
 }
 
-void EventFeed::feed(Nanoseconds now, const SendLine& send) {
+void EventFeed::send_new_events(Nanoseconds now, const SendLine& send) {
   const std::uint64_t newest = log_.newest();
   for (auto& [client, subscription] : subscriptions_) {
     if (subscription.last == newest) continue;
-    for (const EventEntry& event : log_.since(subscription.last, most_fed)) {
-      const Json line{{"id", id_json(subscription.id)}, {"event", dated(event, now)}};
+    for (const EventEntry& event : log_.since(subscription.last, max_events_per_turn)) {
+      const Json line{{"id", id_json(subscription.id)}, {"event", event_with_time(event, now)}};
       if (!send(client, line_of(line), true)) break;
       subscription.last = event.id;
     }
   }
 }
 
-Json EventFeed::dated(const EventEntry& event, Nanoseconds now) {
+Json EventFeed::event_with_time(const EventEntry& event, Nanoseconds now) {
   Json json = event_json(event);
   json["at"] = utc_text(wall_origin(now) + nanoseconds(event.time_s), 3);
   return json;
@@ -63,9 +63,9 @@ Json EventFeed::dated(const EventEntry& event, Nanoseconds now) {
 /// Returns the wall-clock time at time 0 of the event log. The result changes if the wall clock was set, and
 /// for no other reason. Therefore, an event that is sent twice has the same time in both messages.
 Nanoseconds EventFeed::wall_origin(Nanoseconds now) {
-  constexpr Nanoseconds was_set = ns_per_s / 2;
+  constexpr Nanoseconds clock_step = ns_per_s / 2;
   const Nanoseconds origin = wall_time_now() - (now - origin_);
-  if (!wall_origin_ || std::abs(origin - *wall_origin_) > was_set) wall_origin_ = origin;
+  if (!wall_origin_ || std::abs(origin - *wall_origin_) > clock_step) wall_origin_ = origin;
   return *wall_origin_;
 }
 

@@ -41,7 +41,7 @@ class EventFeed {
   [[nodiscard]] nlohmann::ordered_json list(const ClientRequest& request, Nanoseconds now);
   /// Sends new events to the subscribers. If a client does not read, its events are sent when it reads again,
   /// as long as the log stores them. No thread waits for such a client.
-  void feed(Nanoseconds now, const SendLine& send);
+  void send_new_events(Nanoseconds now, const SendLine& send);
 
   [[nodiscard]] const EventLog& log() const noexcept { return log_; }
 
@@ -51,7 +51,7 @@ class EventFeed {
     std::uint64_t last = 0;  ///< id of the newest event that was sent to the subscriber
   };
 
-  [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now);
+  [[nodiscard]] nlohmann::ordered_json event_with_time(const EventEntry& event, Nanoseconds now);
   [[nodiscard]] Nanoseconds wall_origin(Nanoseconds now);
 
   const EventLog& log_;

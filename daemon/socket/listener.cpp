@@ -26,14 +26,14 @@ Failure failure(const std::string& path, std::string_view what) {
 }
 
 /// Returns true if a program listens at the address. If no program listens, errno gives the reason.
-bool answers(const sockaddr_un& address) {
+bool is_listening(const sockaddr_un& address) {
   const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   return net::connect_unix(probe, address) || errno == EAGAIN;
 }
 
 /// Removes the socket file of a daemon that has ended. Returns false if a daemon responds on this socket.
-bool clear_away(const sockaddr_un& address) {
-  if (answers(address)) return false;
+bool remove_stale_socket(const sockaddr_un& address) {
+  if (is_listening(address)) return false;
   // The kernel also refuses a connection to a file that is not a socket. Such a file is not removed, so
   // bind() reports that the file exists.
   struct stat status {};
@@ -43,7 +43,7 @@ bool clear_away(const sockaddr_un& address) {
 }
 
 /// Sets the mode and the group of the socket file.
-bool give_rights(const rig::SocketFile& file) {
+bool set_permissions(const rig::SocketFile& file) {
   if (!file.group.empty()) {
     const group* entry = getgrnam(file.group.c_str());
     if (entry == nullptr) {
@@ -71,7 +71,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
     return Failure(fmt::format("{}: the path of a socket may have at most {} bytes", file.path,
                                sizeof address->sun_path - 1));
   }
-  if (!clear_away(*address))
+  if (!remove_stale_socket(*address))
     return Failure(fmt::format("{}: another softgripd already uses this socket", file.path));
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(file.path).parent_path(), ignored);
@@ -81,7 +81,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
   // bind() creates the socket file without permissions for other users, so that no other user can connect
   // before chmod().
   if (!net::bind_unix(socket, *address)) return failure(file.path, "bind");
-  if (!give_rights(file)) {
+  if (!set_permissions(file)) {
     const auto problem = failure(file.path, fmt::format("mode {:o} group '{}'", file.mode, file.group));
     unlink(file.path.c_str());
     return problem;
@@ -98,8 +98,8 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 Listener::~Listener() {
   struct stat status {};
   // Another daemon may have replaced this socket file by a file of its own. That file must not be removed.
-  const bool there = socket_ && lstat(path_.c_str(), &status) == 0;
-  if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(path_.c_str());
+  const bool exists = socket_ && lstat(path_.c_str(), &status) == 0;
+  if (exists && status.st_dev == device_ && status.st_ino == inode_) unlink(path_.c_str());
 }
 
 }  // namespace softgrip::daemon

@@ -40,15 +40,15 @@ Json problems_json(const std::vector<document::Problem>& problems) {
   return list;
 }
 
-Json sequences_json(const std::vector<SequenceLoader::Listed>& sequences) {
+Json sequences_json(const std::vector<SequenceLoader::SequenceInfo>& sequences) {
   Json list = Json::array();
-  for (const SequenceLoader::Listed& listed : sequences) {
+  for (const SequenceLoader::SequenceInfo& info : sequences) {
     Json parameters = Json::array();
-    for (const control::Parameter& parameter : listed.parameters) parameters.push_back(json_of(parameter));
-    list.push_back({{"name", listed.name},
-                    {"about", listed.about},
+    for (const control::Parameter& parameter : info.parameters) parameters.push_back(json_of(parameter));
+    list.push_back({{"name", info.name},
+                    {"about", info.about},
                     {"parameters", std::move(parameters)},
-                    {"problems", problems_json(listed.problems.list())}});
+                    {"problems", problems_json(info.problems.list())}});
   }
   return list;
 }
@@ -60,21 +60,21 @@ Json checked_json(const LoadedSequence& sequence) {
           {"steps", prepared.steps.size()}};
 }
 
-Json hello_json(const Greeting& greeting, const rig::SocketSettings& settings) {
+Json hello_json(const HelloData& hello, const rig::SocketSettings& settings) {
   Json commands = Json::array();
-  for (const std::string_view name : commands_of(greeting.role)) commands.push_back(name);
+  for (const std::string_view name : commands_of(hello.role)) commands.push_back(name);
   Json capabilities = Json::array({"event_ids", "overall_result", "owner", "start_id"});
-  if (greeting.role == Role::operate) capabilities.push_back("dry_run");
+  if (hello.role == Role::operate) capabilities.push_back("dry_run");
   return {{"api", api_version},
-          {"version", greeting.software_version},
-          {"started_at", greeting.started_at},
-          {"role", name_of(greeting.role)},
-          {"read_only", greeting.role == Role::look},
-          {"client", greeting.client.empty() ? Json(nullptr) : Json(greeting.client)},
+          {"version", hello.software_version},
+          {"started_at", hello.started_at},
+          {"role", name_of(hello.role)},
+          {"read_only", hello.role == Role::look},
+          {"client", hello.client.empty() ? Json(nullptr) : Json(hello.client)},
           {"commands", std::move(commands)},
           {"capabilities", std::move(capabilities)},
           {"bounds",
-           {{"longest_answer_s", greeting.longest_answer_s},
+           {{"longest_answer_s", hello.reply_timeout_s},
             {"max_clients", settings.max_clients},
             {"max_line_bytes", settings.max_line_bytes},
             {"max_queue_bytes", settings.max_queue_bytes}}}};

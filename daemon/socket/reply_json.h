@@ -22,21 +22,21 @@ namespace softgrip::daemon {
 [[nodiscard]] nlohmann::ordered_json id_json(std::optional<std::uint64_t> id);
 [[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
 [[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
-[[nodiscard]] nlohmann::ordered_json sequences_json(const std::vector<SequenceLoader::Listed>& sequences);
+[[nodiscard]] nlohmann::ordered_json sequences_json(
+    const std::vector<SequenceLoader::SequenceInfo>& sequences);
 /// Describes a sequence for the reply to a start with dry_run.
 [[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
 
 /// The data of the reply to the request `hello`.
-struct Greeting {
+struct HelloData {
   std::string_view software_version;
   std::string_view started_at;  ///< start time of the daemon, UTC; an event id is unique in combination with
                                 ///< this time
   Role role = Role::look;
   std::string_view client;  ///< name of the client, as the client gave it
-  double longest_answer_s = 0;
+  double reply_timeout_s = 0;
 };
-[[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,
-                                                const rig::SocketSettings& settings);
+[[nodiscard]] nlohmann::ordered_json hello_json(const HelloData& hello, const rig::SocketSettings& settings);
 
 /// Returns the error reply for two cases: a client that is refused before its first request, and a line that
 /// cannot be parsed.

@@ -52,7 +52,7 @@ SequenceLoader::Result SequenceLoader::load_file(const std::string& path, Argume
                                                  const std::stop_token& stop) const {
   document::Problems problems;
   auto sequence = control::load_sequence(path, problems, arguments);
-  return fit(std::move(sequence), std::move(problems), stop);
+  return prepare_for_rig(std::move(sequence), std::move(problems), stop);
 }
 
 SequenceLoader::Result SequenceLoader::load_named(const std::string& name, Arguments arguments,
@@ -82,7 +82,7 @@ SequenceLoader::Result SequenceLoader::load_text(const std::string& name, const 
   document::Problems problems;
   const document::Document document = document::parse(name, text, problems);
   auto sequence = control::read_sequence(document, problems, arguments);
-  return fit(std::move(sequence), std::move(problems), stop);
+  return prepare_for_rig(std::move(sequence), std::move(problems), stop);
 }
 
 std::vector<std::string> SequenceLoader::names() const {
@@ -100,21 +100,22 @@ std::vector<std::string> SequenceLoader::names() const {
   return names;
 }
 
-std::vector<SequenceLoader::Listed> SequenceLoader::list() const {
-  std::vector<Listed> list;
+std::vector<SequenceLoader::SequenceInfo> SequenceLoader::list() const {
+  std::vector<SequenceInfo> list;
   for (const std::string& name : names()) {
-    Listed& listed = list.emplace_back();
-    listed.name = name;
-    auto sequence = control::load_sequence(directory_ + "/" + name + std::string(ending), listed.problems);
+    SequenceInfo& info = list.emplace_back();
+    info.name = name;
+    auto sequence = control::load_sequence(directory_ + "/" + name + std::string(ending), info.problems);
     if (!sequence) continue;
-    listed.about = std::move(sequence->about);
-    listed.parameters = std::move(sequence->parameters);
+    info.about = std::move(sequence->about);
+    info.parameters = std::move(sequence->parameters);
   }
   return list;
 }
 
-SequenceLoader::Result SequenceLoader::fit(std::optional<control::Sequence> sequence,
-                                           document::Problems problems, const std::stop_token& stop) const {
+SequenceLoader::Result SequenceLoader::prepare_for_rig(std::optional<control::Sequence> sequence,
+                                                       document::Problems problems,
+                                                       const std::stop_token& stop) const {
   if (!sequence || !problems.empty()) return tl::unexpected(std::move(problems));
   const auto began = std::chrono::steady_clock::now();
   auto prepared = control::prepare(*sequence, rig_, problems, stop);

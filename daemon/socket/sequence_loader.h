@@ -41,7 +41,7 @@ class SequenceLoader {
                                  const std::stop_token& stop = {}) const;
 
   /// A sequence file of the directory, as read from its file and not fitted to a rig.
-  struct Listed {
+  struct SequenceInfo {
     std::string name;  ///< name that a start request can use, without `.yaml`
     std::string about;
     std::vector<control::Parameter> parameters;
@@ -49,12 +49,12 @@ class SequenceLoader {
   };
   /// Returns the sequences of the directory in the order of their names, at most `most_listed`. Reads all
   /// their files, so the call may wait for the disk.
-  [[nodiscard]] std::vector<Listed> list() const;
+  [[nodiscard]] std::vector<SequenceInfo> list() const;
   static constexpr std::size_t most_listed = 500;
 
  private:
-  [[nodiscard]] Result fit(std::optional<control::Sequence> sequence, document::Problems problems,
-                           const std::stop_token& stop) const;
+  [[nodiscard]] Result prepare_for_rig(std::optional<control::Sequence> sequence, document::Problems problems,
+                                       const std::stop_token& stop) const;
   [[nodiscard]] std::vector<std::string> names() const;
 
   control::RigSettings rig_;

@@ -16,7 +16,7 @@ using EventKind = control::Event::Kind;
 namespace {
 
 /// Largest number of requests for which the name of the requesting client is stored.
-constexpr std::size_t most_clients = 256;
+constexpr std::size_t max_client_names = 256;
 
 /// Returns the fault to which the reply of an event refers.
 control::Fault fault_in(const control::Event& event) {
@@ -48,41 +48,42 @@ std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
   if (!push(request, std::move(sequence))) {
     const bool vents = kind == control::Request::Kind::vent;
     if (!vents && kind != control::Request::Kind::stop) return std::nullopt;
-    return answers_.try_emplace(vents ? last_vent_ : last_stop_).first->first;
+    return replies_.try_emplace(vents ? last_vent_ : last_stop_).first->first;
   }
-  note_submitted(request.id, client);
+  register_request(request.id, client);
   return request.id;
 }
 
-std::optional<std::uint32_t> Service::submit_stop_of(std::uint32_t start, const std::string& client) {
-  if (const auto waiting = stops_of_.find(start); waiting != stops_of_.end()) return waiting->second;
+std::optional<std::uint32_t> Service::submit_stop(std::uint32_t start, const std::string& client) {
+  if (const auto waiting = pending_stops_.find(start); waiting != pending_stops_.end())
+    return waiting->second;
   control::Request request;
   request.kind = control::Request::Kind::stop;
   request.id = last_request_ + 1;
   request.of_start = start;
   if (!shared_.named_stops.push(request)) return std::nullopt;
-  stops_of_[start] = request.id;
-  note_submitted(request.id, client);
+  pending_stops_[start] = request.id;
+  register_request(request.id, client);
   return request.id;
 }
 
-void Service::note_submitted(std::uint32_t request, const std::string& client) {
+void Service::register_request(std::uint32_t request, const std::string& client) {
   last_request_ = request;
-  answers_[request] = {};
-  note_client(request, client);
+  replies_[request] = {};
+  store_client_name(request, client);
 }
 
-void Service::forget(std::uint32_t request) {
-  answers_.erase(request);
-  std::erase_if(stops_of_, [request](const auto& stop) { return stop.second == request; });
+void Service::discard_reply(std::uint32_t request) {
+  replies_.erase(request);
+  std::erase_if(pending_stops_, [request](const auto& stop) { return stop.second == request; });
 }
 
-void Service::note_client(std::uint32_t request, const std::string& client) {
+void Service::store_client_name(std::uint32_t request, const std::string& client) {
   if (!client.empty()) clients_[request] = client;
   // Removes the oldest entry, but not the entry of the running sequence.
   auto oldest = clients_.begin();
   if (oldest != clients_.end() && oldest->first == sequence_request_) ++oldest;
-  if (clients_.size() > most_clients) clients_.erase(oldest);
+  if (clients_.size() > max_client_names) clients_.erase(oldest);
 }
 
 std::string Service::client_of(std::uint32_t request) const {
@@ -123,7 +124,7 @@ void Service::pump() {
     entry.time_s = seconds(event.at - origin_);
     log_.add(std::move(entry));
   }
-  for (StampedEvent event; events_.pop(event);) take(event);
+  for (StampedEvent event; events_.pop(event);) process_event(event);
   const std::uint64_t dropped = shared_.events_dropped.load(std::memory_order_relaxed) + events_.lost();
   if (dropped != events_dropped_) {
     EventEntry entry;
@@ -137,7 +138,7 @@ void Service::pump() {
   }
 }
 
-void Service::take(const StampedEvent& stamped) {
+void Service::process_event(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
   if (event.kind == EventKind::sequence_started) {
     sequence_ = sequence_store_.find(event.request);
@@ -150,25 +151,25 @@ void Service::take(const StampedEvent& stamped) {
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
     sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {
-    ending_ = {event.request, std::get<control::SequenceEnd>(event.detail)};
+    last_finished_ = {event.request, std::get<control::SequenceEnd>(event.detail)};
   }
-  const auto answer = answers_.find(event.request);
-  if (answer != answers_.end() && answer->second.kind == Answer::Kind::pending) {
+  const auto reply = replies_.find(event.request);
+  if (reply != replies_.end() && reply->second.kind == Reply::Kind::pending) {
     const bool refused = event.kind == EventKind::request_refused;
-    answer->second.kind = refused ? Answer::Kind::refused : Answer::Kind::accepted;
-    if (refused) answer->second.refusal = std::get<control::RequestRefusal>(event.detail).code;
-    answer->second.fault = fault_in(event);
-    std::erase_if(stops_of_, [&event](const auto& stop) { return stop.second == event.request; });
+    reply->second.kind = refused ? Reply::Kind::refused : Reply::Kind::accepted;
+    if (refused) reply->second.refusal = std::get<control::RequestRefusal>(event.detail).code;
+    reply->second.fault = fault_in(event);
+    std::erase_if(pending_stops_, [&event](const auto& stop) { return stop.second == event.request; });
   }
   EventEntry entry = describe(event, channel_names_, sequence_ ? &sequence_->prepared : nullptr);
   entry.time_s = seconds(stamped.at - origin_);
   entry.client = client_of(event.request);
   log_.add(std::move(entry));
-  if (event.kind == EventKind::grip_result) note_result(stamped);
+  if (event.kind == EventKind::grip_result) update_overall_result(stamped);
 }
 
 /// Updates the overall result of the grip when the result of a finger changes.
-void Service::note_result(const StampedEvent& stamped) {
+void Service::update_overall_result(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
   if (event.channel >= results_.size()) return;
   results_[event.channel] = std::get<control::GripAnswer>(event.detail).result;
@@ -185,12 +186,12 @@ void Service::note_result(const StampedEvent& stamped) {
   log_.add(std::move(entry));
 }
 
-Service::Answer Service::take_answer(std::uint32_t request) {
-  const auto found = answers_.find(request);
-  if (found == answers_.end()) return {};
-  const Answer answer = found->second;
-  if (answer.kind != Answer::Kind::pending) answers_.erase(found);
-  return answer;
+Service::Reply Service::take_reply(std::uint32_t request) {
+  const auto found = replies_.find(request);
+  if (found == replies_.end()) return {};
+  const Reply reply = found->second;
+  if (reply.kind != Reply::Kind::pending) replies_.erase(found);
+  return reply;
 }
 
 const Snapshot& Service::snapshot() noexcept {

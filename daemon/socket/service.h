@@ -35,30 +35,30 @@ class Service {
   /// sequence. Returns the id of this stop request. If an earlier stop of this start has no reply yet,
   /// returns the id of the earlier stop. If the queue is full because the loop has not taken the earlier
   /// requests yet, returns nothing.
-  std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
+  std::optional<std::uint32_t> submit_stop(std::uint32_t start, const std::string& client = {});
 
   /// Moves the events of loop and bus into the log, and stores the replies of the loop.
   void pump();
 
   /// Returns the loop's reply to a request, or `pending` if there is no reply yet. The first call that
   /// returns a reply removes the stored reply.
-  struct Answer {
+  struct Reply {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
     control::RefusalCode refusal = control::RefusalCode::none;
     control::Fault fault;  ///< fault that was reset, or fault whose cause is still present; `none` for all
                            ///< other replies
   };
-  [[nodiscard]] Answer take_answer(std::uint32_t request);
+  [[nodiscard]] Reply take_reply(std::uint32_t request);
   /// Discards the loop's reply to a request.
-  void forget(std::uint32_t request);
+  void discard_reply(std::uint32_t request);
 
   /// Returns the result of the newest sequence that has ended, and the request that started this sequence.
-  struct Ending {
+  struct FinishedSequence {
     std::uint32_t request = 0;  ///< request that started the sequence; 0: no sequence has ended
     control::SequenceEnd end = control::SequenceEnd::done;
   };
-  [[nodiscard]] const Ending& last_ending() const noexcept { return ending_; }
+  [[nodiscard]] const FinishedSequence& last_finished() const noexcept { return last_finished_; }
 
   /// Returns the sequence that runs or ran last; nullptr before the first sequence.
   [[nodiscard]] const std::shared_ptr<const LoadedSequence>& sequence() const noexcept { return sequence_; }
@@ -69,8 +69,8 @@ class Service {
   /// requests are removed when many newer requests have arrived.
   [[nodiscard]] std::string client_of(std::uint32_t request) const;
   /// Returns true if the request has started a sequence, and this sequence has not ended yet.
-  [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
-    return request != 0 && request == sequence_request_ && ending_.request != request;
+  [[nodiscard]] bool is_running(std::uint32_t request) const noexcept {
+    return request != 0 && request == sequence_request_ && last_finished_.request != request;
   }
 
   /// Reason of the present bus failure: the first failure since the last successful exchange, or the reason
@@ -87,11 +87,11 @@ class Service {
   [[nodiscard]] const Snapshot& snapshot() noexcept;
 
  private:
-  void take(const StampedEvent& event);
-  void note_result(const StampedEvent& event);
-  void note_client(std::uint32_t request, const std::string& client);
+  void process_event(const StampedEvent& event);
+  void update_overall_result(const StampedEvent& event);
+  void store_client_name(std::uint32_t request, const std::string& client);
   bool push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence);
-  void note_submitted(std::uint32_t request, const std::string& client);
+  void register_request(std::uint32_t request, const std::string& client);
 
   std::vector<std::string> channel_names_;
   Nanoseconds origin_;
@@ -102,17 +102,17 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;  // replies of the loop by id of the request; a reply is removed
-                                             // when it is returned
-  std::map<std::uint32_t, std::uint32_t> stops_of_;  // id of the stop request by id of the start, for stop
-                                                     // requests that have no reply yet
-  std::vector<control::GripResult> results_;         // grip results by channel in the present sequence
+  std::map<std::uint32_t, Reply> replies_;  // replies of the loop by id of the request; a reply is removed
+                                            // when it is returned
+  std::map<std::uint32_t, std::uint32_t> pending_stops_;  // id of the stop request by id of the start, for
+                                                          // stop requests that have no reply yet
+  std::vector<control::GripResult> results_;              // grip results by channel in the present sequence
   control::GripResult overall_ = control::GripResult::none;
   std::map<std::uint32_t, std::string> clients_;  // names of the clients that made the newest requests, by id
                                                   // of the request
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
-  Ending ending_;
+  FinishedSequence last_finished_;
   BusFailure bus_failure_;
   std::uint64_t events_dropped_ = 0;  // number of lost events that were already reported
 };

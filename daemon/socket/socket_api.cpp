@@ -21,11 +21,11 @@ using Command = ClientRequest::Command;
 using Kind = control::Request::Kind;
 
 /// Longest time to wait for the loop's reply to a request [ns]. The loop normally replies within one tick.
-constexpr Nanoseconds longest_answer = ns_per_s;
-/// Longest time between two calls of on_time() [ns]: longest_pause in general, and pause_while_asked while a
-/// client waits for the loop's reply.
-constexpr Nanoseconds longest_pause = ns_per_s / 50;
-constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
+constexpr Nanoseconds reply_timeout = ns_per_s;
+/// Longest time between two calls of update() [ns]: update_period in general, and pending_update_period while
+/// a client waits for the loop's reply.
+constexpr Nanoseconds update_period = ns_per_s / 50;
+constexpr Nanoseconds pending_update_period = ns_per_s / 1000;
 
 }  // namespace
 
@@ -39,39 +39,39 @@ SocketApi::SocketApi(StatusSources sources, rig::SocketSettings settings,
       send_(std::move(send)) {}
 
 SocketApi::~SocketApi() {
-  if (planned_) abandon_planned();
+  if (loading_) abandon_loading();
 }
 
 void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now) {
   const auto request = parse_client_request(line);
   if (!request) {
-    fail(client, request.error().id, error_json("bad_request", request.error().message));
+    send_error(client, request.error().id, error_json("bad_request", request.error().message));
     return;
   }
   if (const Json refusal = refusal_of(client, *request); !refusal.is_null()) {
-    fail(client, request->id, refusal);
+    send_error(client, request->id, refusal);
     return;
   }
   switch (request->command) {
     case Command::hello:
-      greet(client, *request);
+      process_hello(client, *request);
       break;
     case Command::subscribe:
-      ok(client, request->id, events_.subscribe(client, *request));
+      send_result(client, request->id, events_.subscribe(client, *request));
       break;
     case Command::unsubscribe:
       events_.unsubscribe(client);
-      ok(client, request->id, Json::object());
+      send_result(client, request->id, Json::object());
       break;
     case Command::status:
-      ok(client, request->id, status());
+      send_result(client, request->id, status());
       break;
     case Command::watch:
       watch(client, *request, now);
       break;
     case Command::unwatch:
       watches_.erase(client);
-      ok(client, request->id, Json::object());
+      send_result(client, request->id, Json::object());
       break;
     case Command::start:
       start(client, *request, now);
@@ -80,21 +80,22 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       stop(client, *request, now);
       break;
     case Command::vent:
-      refuse_planned();
-      ask(client, request->id, Kind::vent, nullptr, now);
+      refuse_loading();
+      submit(client, request->id, Kind::vent, nullptr, now);
       break;
     case Command::release:
-      refuse_planned();
-      ask(client, request->id, Kind::release, nullptr, now);
+      refuse_loading();
+      submit(client, request->id, Kind::release, nullptr, now);
       break;
     case Command::acknowledge:
-      ask(client, request->id, Kind::acknowledge, nullptr, now);
+      submit(client, request->id, Kind::acknowledge, nullptr, now);
       break;
     case Command::events:
-      ok(client, request->id, events_.list(*request, now));
+      send_result(client, request->id, events_.list(*request, now));
       break;
     case Command::statistics:
-      ok(client, request->id, statistics_json(sources_, events_.log().counts(), request->histograms));
+      send_result(client, request->id,
+                  statistics_json(sources_, events_.log().counts(), request->histograms));
       break;
     case Command::sequences:
       list_sequences(client, request->id);
@@ -105,15 +106,15 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
 /// Returns the reason why this client may not make the request at present; null if the request is allowed.
 /// The check of a start (dry run) has the same rule as a start.
 Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const {
-  if (only_looks(request.command)) return nullptr;
+  if (is_read_only(request.command)) return nullptr;
   const auto found = clients_.find(client);
   if (found == clients_.end() || found->second.role != Role::operate) {
     return error_json("not_allowed",
                       "this socket is read-only; connect to the other socket to move the gripper");
   }
-  const bool halts = request.command == Command::stop || request.command == Command::vent;
+  const bool is_stop_or_vent = request.command == Command::stop || request.command == Command::vent;
   const std::string* const other = owner();
-  if (halts || request.dry_run || other == nullptr || owner_client() == client) return nullptr;
+  if (is_stop_or_vent || request.dry_run || other == nullptr || owner_client() == client) return nullptr;
   Json error = error_json("owned", "'" + *other +
                                        "' has started the running sequence and is still connected: other "
                                        "clients may only stop and vent");
@@ -133,15 +134,15 @@ const std::string* SocketApi::owner() const {
 /// disconnected.
 ClientId SocketApi::owner_client() const {
   const std::uint32_t running = sources_.service.sequence_request();
-  if (sources_.service.runs(running)) return starts_.client_of(running);
+  if (sources_.service.is_running(running)) return starts_.client_of(running);
   const auto waiting =
-      std::ranges::find_if(asked_, [this](const auto& entry) { return starts_.has(entry.first); });
-  return waiting == asked_.end() ? 0 : waiting->second.client;
+      std::ranges::find_if(pending_requests_, [this](const auto& entry) { return starts_.has(entry.first); });
+  return waiting == pending_requests_.end() ? 0 : waiting->second.client;
 }
 
-bool SocketApi::keeps_place(ClientId client) const {
+bool SocketApi::keeps_connection(ClientId client) const {
   if (events_.has(client)) return true;
-  if (planned_ && planned_->client == client && !planned_->abandoned) return true;
+  if (loading_ && loading_->client == client && !loading_->abandoned) return true;
   return owner_client() == client;
 }
 
@@ -152,22 +153,22 @@ Json SocketApi::status() const {
   return json;
 }
 
-void SocketApi::greet(ClientId client, const ClientRequest& request) {
+void SocketApi::process_hello(ClientId client, const ClientRequest& request) {
   if (request.api != api_version) {
-    fail(
+    send_error(
         client, request.id,
         error_json("wrong_api", "this daemon supports only protocol version " + std::to_string(api_version)));
     return;
   }
   Client& known = clients_[client];
   if (!request.client.empty()) known.name = request.client;
-  ok(client, request.id,
-     hello_json({.software_version = sources_.provenance.software_version,
-                 .started_at = started_at_,
-                 .role = known.role,
-                 .client = known.name,
-                 .longest_answer_s = seconds(longest_answer)},
-                settings_));
+  send_result(client, request.id,
+              hello_json({.software_version = sources_.provenance.software_version,
+                          .started_at = started_at_,
+                          .role = known.role,
+                          .client = known.name,
+                          .reply_timeout_s = seconds(reply_timeout)},
+                         settings_));
 }
 
 void SocketApi::on_opened(ClientId client, Role role) {
@@ -178,33 +179,33 @@ void SocketApi::on_closed(ClientId client) {
   clients_.erase(client);
   events_.unsubscribe(client);
   watches_.erase(client);
-  std::erase_if(asked_, [this, client](const auto& entry) {
+  std::erase_if(pending_requests_, [this, client](const auto& entry) {
     if (entry.second.client != client) return false;
-    if (asked_.count(entry.first) == 1) sources_.service.forget(entry.first);
+    if (pending_requests_.count(entry.first) == 1) sources_.service.discard_reply(entry.first);
     return true;
   });
-  if (planned_ && planned_->client == client) abandon_planned();
+  if (loading_ && loading_->client == client) abandon_loading();
   if (listing_)
     std::erase_if(listing_->waiting, [client](const auto& waiting) { return waiting.first == client; });
 }
 
-Nanoseconds SocketApi::on_time(Nanoseconds now) {
-  take_planned(now);
-  take_listing();
-  for (auto entry = asked_.begin(); entry != asked_.end();) {
+Nanoseconds SocketApi::update(Nanoseconds now) {
+  process_loaded(now);
+  process_listing();
+  for (auto entry = pending_requests_.begin(); entry != pending_requests_.end();) {
     const std::uint32_t request = entry->first;
-    const auto end = asked_.upper_bound(request);
-    const Service::Answer said = sources_.service.take_answer(request);
-    if (said.kind == Service::Answer::Kind::pending && now < entry->second.give_up) {
+    const auto end = pending_requests_.upper_bound(request);
+    const Service::Reply reply = sources_.service.take_reply(request);
+    if (reply.kind == Service::Reply::Kind::pending && now < entry->second.deadline) {
       entry = end;
       continue;
     }
-    for (auto waiting = entry; waiting != end; ++waiting) answer(waiting->second, request, said);
-    if (said.kind == Service::Answer::Kind::pending) sources_.service.forget(request);
-    entry = asked_.erase(entry, end);
+    for (auto waiting = entry; waiting != end; ++waiting) send_reply(waiting->second, request, reply);
+    if (reply.kind == Service::Reply::Kind::pending) sources_.service.discard_reply(request);
+    entry = pending_requests_.erase(entry, end);
   }
-  events_.feed(now, send_);
-  Nanoseconds next = now + (asked_.empty() ? longest_pause : pause_while_asked);
+  events_.send_new_events(now, send_);
+  Nanoseconds next = now + (pending_requests_.empty() ? update_period : pending_update_period);
   for (auto& [client, watch] : watches_) {
     if (now >= watch.due) {
       send_(client, line_of({{"id", id_json(watch.id)}, {"watch", status()}}), true);
@@ -218,13 +219,14 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
 /// Loads the sequence of a start in a separate thread, so that a vent or stop request never waits for the
 /// planning or for the disk.
 void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds now) {
-  take_planned(now);
-  if (planned_) {
-    fail(client, request.id, error_json("busy", "the sequence of an earlier start is still being loaded"));
+  process_loaded(now);
+  if (loading_) {
+    send_error(client, request.id,
+               error_json("busy", "the sequence of an earlier start is still being loaded"));
     return;
   }
   if (const Json refusal = refusal_of_id(request.start_id); !refusal.is_null())
-    return fail(client, request.id, refusal);
+    return send_error(client, request.id, refusal);
   const std::stop_source stop;
   std::packaged_task<SequenceLoader::Result()> load(
       [loader = loader_, name = request.sequence, text = request.sequence_text,
@@ -232,12 +234,12 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
         return text.empty() ? loader->load_named(name, parameters, token)
                             : loader->load_text(name, text, parameters, token);
       });
-  planned_ = Planned{.client = client,
-                     .id = request.id,
-                     .loaded = load.get_future(),
-                     .stop = stop,
-                     .start_id = request.start_id,
-                     .dry_run = request.dry_run};
+  loading_ = LoadingStart{.client = client,
+                          .id = request.id,
+                          .loaded = load.get_future(),
+                          .stop = stop,
+                          .start_id = request.start_id,
+                          .dry_run = request.dry_run};
   std::thread(std::move(load)).detach();
 }
 
@@ -255,17 +257,17 @@ void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds 
     stop_of(client, request, now);
     return;
   }
-  refuse_planned();
-  ask(client, request.id, Kind::stop, nullptr, now);
+  refuse_loading();
+  submit(client, request.id, Kind::stop, nullptr, now);
 }
 
 /// Stops one start in any of four states: not received yet, being loaded, passed to the loop, or running.
 void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const std::string& id = request.start_id;
-  if (!id.empty() && planned_ && !planned_->abandoned && planned_->start_id == id) {
-    refuse_planned();
+  if (!id.empty() && loading_ && !loading_->abandoned && loading_->start_id == id) {
+    refuse_loading();
     starts_.forbid(id);
-    ok(client, request.id, {{"request", 0}});
+    send_result(client, request.id, {{"request", 0}});
     return;
   }
   std::optional<std::uint32_t> start = starts_.request_of(id);
@@ -273,18 +275,18 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
     start = static_cast<std::uint32_t>(*request.request);
   if (!start) {
     if (!id.empty()) starts_.forbid(id);
-    fail(client, request.id, refused_json(control::RefusalCode::named_start_not_running, {}, 0));
+    send_error(client, request.id, refused_json(control::RefusalCode::named_start_not_running, {}, 0));
     return;
   }
-  const auto number = sources_.service.submit_stop_of(*start, clients_[client].name);
-  wait_for(number, {.client = client, .id = request.id, .give_up = now + longest_answer});
+  const auto number = sources_.service.submit_stop(*start, clients_[client].name);
+  register_pending(number, {.client = client, .id = request.id, .deadline = now + reply_timeout});
 }
 
 /// Lists the sequences of the directory. A separate thread reads their files, so that a vent request never
 /// waits for the disk. If the directory blocks, only one thread is blocked, even if there are many requests.
 void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
   if (!listing_) {
-    std::packaged_task<std::vector<SequenceLoader::Listed>()> read(
+    std::packaged_task<std::vector<SequenceLoader::SequenceInfo>()> read(
         [loader = loader_] { return loader->list(); });
     listing_ = Listing{read.get_future(), {}};
     std::thread(std::move(read)).detach();
@@ -292,87 +294,90 @@ void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id)
   listing_->waiting.emplace_back(client, id);
 }
 
-void SocketApi::take_listing() {
+void SocketApi::process_listing() {
   if (!listing_ || listing_->read.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   Listing listing = std::move(*listing_);
   listing_.reset();
   const Json result{{"sequences", sequences_json(listing.read.get())}};
-  for (const auto& [client, id] : listing.waiting) ok(client, id, result);
+  for (const auto& [client, id] : listing.waiting) send_result(client, id, result);
 }
 
-void SocketApi::abandon_planned() noexcept {
-  planned_->abandoned = true;
-  planned_->stop.request_stop();
+void SocketApi::abandon_loading() noexcept {
+  loading_->abandoned = true;
+  loading_->stop.request_stop();
 }
 
 /// Refuses the start whose sequence is being loaded, because a request to stop or to vent has arrived.
-void SocketApi::refuse_planned() {
-  if (!planned_ || planned_->abandoned) return;
-  abandon_planned();
-  fail(planned_->client, planned_->id,
-       error_json("abandoned", "a stop or vent request arrived while the sequence was being loaded"));
+void SocketApi::refuse_loading() {
+  if (!loading_ || loading_->abandoned) return;
+  abandon_loading();
+  send_error(loading_->client, loading_->id,
+             error_json("abandoned", "a stop or vent request arrived while the sequence was being loaded"));
 }
 
-void SocketApi::take_planned(Nanoseconds now) {
-  if (!planned_ || planned_->loaded.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  Planned planned = std::move(*planned_);
-  planned_.reset();
-  SequenceLoader::Result sequence = planned.loaded.get();
+void SocketApi::process_loaded(Nanoseconds now) {
+  if (!loading_ || loading_->loaded.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  LoadingStart start = std::move(*loading_);
+  loading_.reset();
+  SequenceLoader::Result sequence = start.loaded.get();
   // If the client has disconnected while the sequence was loaded, the sequence is not started.
-  if (!planned.abandoned) loaded(planned, std::move(sequence), now);
+  if (!start.abandoned) start_loaded(start, std::move(sequence), now);
 }
 
-void SocketApi::loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now) {
+void SocketApi::start_loaded(const LoadingStart& start, SequenceLoader::Result sequence, Nanoseconds now) {
   if (!sequence) {
     Json error = error_json("sequence_refused", "the sequence cannot be run on this rig");
     error["problems"] = problems_json(sequence.error().list());
-    fail(planned.client, planned.id, error);
+    send_error(start.client, start.id, error);
     return;
   }
-  const Kind kind = planned.dry_run ? Kind::check : Kind::start;
-  const auto number = ask(planned.client, planned.id, kind, std::move(*sequence), now);
-  if (number && !planned.dry_run)
-    starts_.add({.request = *number, .id = planned.start_id, .client = planned.client},
+  const Kind kind = start.dry_run ? Kind::check : Kind::start;
+  const auto number = submit(start.client, start.id, kind, std::move(*sequence), now);
+  if (number && !start.dry_run)
+    starts_.add({.request = *number, .id = start.start_id, .client = start.client},
                 sources_.service.sequence_request());
 }
 
-std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
-                                            std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
-  Asked asked{.client = client, .id = id, .give_up = now + longest_answer};
-  if (sequence) asked.remarks = sequence->remarks;
-  if (kind == Kind::check) asked.checked = sequence;
+std::optional<std::uint32_t> SocketApi::submit(ClientId client, std::optional<std::uint64_t> id, Kind kind,
+                                               std::shared_ptr<const LoadedSequence> sequence,
+                                               Nanoseconds now) {
+  PendingRequest pending{.client = client, .id = id, .deadline = now + reply_timeout};
+  if (sequence) pending.remarks = sequence->remarks;
+  if (kind == Kind::check) pending.checked = sequence;
   const auto number = sources_.service.submit(kind, std::move(sequence), clients_[client].name);
-  wait_for(number, std::move(asked));
+  register_pending(number, std::move(pending));
   return number;
 }
 
 /// Stores that the client waits for the loop's reply to the request `number`. If `number` is empty, because
 /// the loop's queue was full, the client gets the reply `busy`.
-void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
+void SocketApi::register_pending(std::optional<std::uint32_t> number, PendingRequest pending) {
   if (number) {
-    asked_.insert({*number, std::move(asked)});
+    pending_requests_.insert({*number, std::move(pending)});
   } else {
-    fail(asked.client, asked.id,
-         error_json("busy", "the control loop has not yet processed the previous requests"));
+    send_error(pending.client, pending.id,
+               error_json("busy", "the control loop has not yet processed the previous requests"));
   }
 }
 
-void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer) {
-  if (answer.kind == Service::Answer::Kind::pending) {
-    fail(asked.client, asked.id, error_json("no_answer", "the control loop did not respond within 1 s"));
+void SocketApi::send_reply(const PendingRequest& pending, std::uint32_t request,
+                           const Service::Reply& reply) {
+  if (reply.kind == Service::Reply::Kind::pending) {
+    send_error(pending.client, pending.id,
+               error_json("no_answer", "the control loop did not respond within 1 s"));
     return;
   }
-  if (answer.kind == Service::Answer::Kind::accepted) {
+  if (reply.kind == Service::Reply::Kind::accepted) {
     Json result{{"request", request}};
-    if (answer.fault.code != control::FaultCode::none) {
-      result["acknowledged"] = fault_title_json(answer.fault, sources_.service.channel_names());
+    if (reply.fault.code != control::FaultCode::none) {
+      result["acknowledged"] = fault_title_json(reply.fault, sources_.service.channel_names());
     }
-    if (asked.checked) result["would_start"] = checked_json(*asked.checked);
-    if (!asked.remarks.warnings().empty()) result["warnings"] = problems_json(asked.remarks.warnings());
-    ok(asked.client, asked.id, result);
+    if (pending.checked) result["would_start"] = checked_json(*pending.checked);
+    if (!pending.remarks.warnings().empty()) result["warnings"] = problems_json(pending.remarks.warnings());
+    send_result(pending.client, pending.id, result);
     return;
   }
-  fail(asked.client, asked.id, refused_json(answer.refusal, answer.fault, request));
+  send_error(pending.client, pending.id, refused_json(reply.refusal, reply.fault, request));
 }
 
 Json SocketApi::refused_json(control::RefusalCode refusal, const control::Fault& fault,
@@ -386,14 +391,14 @@ Json SocketApi::refused_json(control::RefusalCode refusal, const control::Fault&
 void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const auto period = static_cast<Nanoseconds>(static_cast<double>(ns_per_s) / request.rate_hz);
   watches_[client] = {.id = request.id, .period = period, .due = now};
-  ok(client, request.id, {{"rate_hz", request.rate_hz}});
+  send_result(client, request.id, {{"rate_hz", request.rate_hz}});
 }
 
-void SocketApi::ok(ClientId client, std::optional<std::uint64_t> id, const Json& result) {
+void SocketApi::send_result(ClientId client, std::optional<std::uint64_t> id, const Json& result) {
   send_(client, line_of({{"id", id_json(id)}, {"ok", true}, {"result", result}}), false);
 }
 
-void SocketApi::fail(ClientId client, std::optional<std::uint64_t> id, const Json& error) {
+void SocketApi::send_error(ClientId client, std::optional<std::uint64_t> id, const Json& error) {
   send_(client, line_of({{"id", id_json(id)}, {"ok", false}, {"error", error}}), false);
 }
 

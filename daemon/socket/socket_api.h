@@ -42,23 +42,23 @@ class SocketApi {
   void on_closed(ClientId client);
   /// Returns true if the client must keep its connection although it sends no requests. This is the case if
   /// the client has a subscription, or if a start of the client runs or may still begin.
-  [[nodiscard]] bool keeps_place(ClientId client) const;
-  /// Returns true while the sequence of a start is being loaded. After the loading, on_time() passes the
+  [[nodiscard]] bool keeps_connection(ClientId client) const;
+  /// Returns true while the sequence of a start is being loaded. After the loading, update() passes the
   /// sequence to the loop.
-  [[nodiscard]] bool loads() const noexcept { return planned_.has_value(); }
+  [[nodiscard]] bool is_loading() const noexcept { return loading_.has_value(); }
   /// Sends the replies of the loop, and the states that are due for the clients of `watch`. Returns the
-  /// latest time at which on_time() must be called again.
-  Nanoseconds on_time(Nanoseconds now);
+  /// latest time at which update() must be called again.
+  Nanoseconds update(Nanoseconds now);
 
  private:
   struct Client {
     Role role = Role::look;
     std::string name;  ///< name that the client gave in its hello
   };
-  struct Asked {  // a request that was passed to the loop
+  struct PendingRequest {  // a request that was passed to the loop
     ClientId client = 0;
     std::optional<std::uint64_t> id;
-    Nanoseconds give_up = 0;
+    Nanoseconds deadline = 0;
     document::Problems remarks{};                     ///< warnings about the sequence of the request
     std::shared_ptr<const LoadedSequence> checked{};  ///< for a dry run: the sequence that was checked
   };
@@ -68,7 +68,7 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
-  struct Planned {  // a start whose sequence is being loaded by a separate thread
+  struct LoadingStart {  // a start whose sequence is being loaded by a separate thread
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
@@ -79,7 +79,7 @@ class SocketApi {
   };
 
   struct Listing {  // the list of the sequence directory, which a separate thread reads
-    std::future<std::vector<SequenceLoader::Listed>> read;
+    std::future<std::vector<SequenceLoader::SequenceInfo>> read;
     std::vector<std::pair<ClientId, std::optional<std::uint64_t>>> waiting;
   };
 
@@ -87,27 +87,27 @@ class SocketApi {
   [[nodiscard]] const std::string* owner() const;
   [[nodiscard]] ClientId owner_client() const;
   [[nodiscard]] nlohmann::ordered_json status() const;
-  void greet(ClientId client, const ClientRequest& request);
+  void process_hello(ClientId client, const ClientRequest& request);
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
   [[nodiscard]] nlohmann::ordered_json refusal_of_id(const std::string& start_id) const;
   void stop(ClientId client, const ClientRequest& request, Nanoseconds now);
   void stop_of(ClientId client, const ClientRequest& request, Nanoseconds now);
-  void loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now);
-  void take_planned(Nanoseconds now);
-  void abandon_planned() noexcept;
-  void refuse_planned();
-  std::optional<std::uint32_t> ask(ClientId client, std::optional<std::uint64_t> id,
-                                   control::Request::Kind kind,
-                                   std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
+  void start_loaded(const LoadingStart& start, SequenceLoader::Result sequence, Nanoseconds now);
+  void process_loaded(Nanoseconds now);
+  void abandon_loading() noexcept;
+  void refuse_loading();
+  std::optional<std::uint32_t> submit(ClientId client, std::optional<std::uint64_t> id,
+                                      control::Request::Kind kind,
+                                      std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
   [[nodiscard]] nlohmann::ordered_json refused_json(control::RefusalCode refusal, const control::Fault& fault,
                                                     std::uint32_t request) const;
-  void wait_for(std::optional<std::uint32_t> number, Asked asked);
-  void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
+  void register_pending(std::optional<std::uint32_t> number, PendingRequest pending);
+  void send_reply(const PendingRequest& pending, std::uint32_t request, const Service::Reply& reply);
   void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
   void list_sequences(ClientId client, std::optional<std::uint64_t> id);
-  void take_listing();
-  void ok(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
-  void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
+  void process_listing();
+  void send_result(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
+  void send_error(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
 
   StatusSources sources_;
   rig::SocketSettings settings_;
@@ -115,11 +115,11 @@ class SocketApi {
   std::shared_ptr<const SequenceLoader> loader_;
   EventFeed events_;
   SendLine send_;
-  std::multimap<std::uint32_t, Asked> asked_;  // requests that wait for the loop's reply, by their id in the
-                                               // loop
+  std::multimap<std::uint32_t, PendingRequest> pending_requests_;  // requests that wait for the loop's reply,
+                                                                   // by their id in the loop
   std::map<ClientId, Client> clients_;
   std::map<ClientId, Watch> watches_;
-  std::optional<Planned> planned_;
+  std::optional<LoadingStart> loading_;
   StartLedger starts_;
   std::optional<Listing> listing_;
 };

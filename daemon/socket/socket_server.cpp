@@ -24,23 +24,23 @@ namespace {
 /// wait too long.
 constexpr int most_accepts = 4;
 /// If `max_clients` clients are connected, the server can disconnect a silent client to admit a new client. A
-/// client that has sent no request counts as silent after `first_word` [ns]. Any other client counts as
-/// silent `longest_silence` [ns] after its last request or reply.
-constexpr Nanoseconds first_word = ns_per_s / 10;
-constexpr Nanoseconds longest_silence = 5 * ns_per_s;
+/// client that has sent no request counts as silent after `first_request_timeout` [ns]. Any other client
+/// counts as silent `client_idle_timeout` [ns] after its last request or reply.
+constexpr Nanoseconds first_request_timeout = ns_per_s / 10;
+constexpr Nanoseconds client_idle_timeout = 5 * ns_per_s;
 /// Largest number of clients of one role that are connected in addition to the permitted `max_clients`. The
 /// server refuses the requests of these clients, except urgent requests such as stop and vent.
-constexpr std::size_t most_standing = 32;
+constexpr std::size_t max_over_limit = 32;
 /// Longest time for which the lines of one client are processed in one call. Processing a line is never
 /// interrupted.
-constexpr std::chrono::microseconds longest_turn(500);
+constexpr std::chrono::microseconds max_turn_time(500);
 /// Time until the server tries to accept a client again if no descriptor was free [ns]. Without a descriptor,
 /// the server cannot even refuse a client.
 constexpr Nanoseconds accept_pause = ns_per_s / 10;
 /// Time after which a client that does not read its output is disconnected [ns].
-constexpr Nanoseconds longest_stall = 10 * ns_per_s;
+constexpr Nanoseconds stall_timeout = 10 * ns_per_s;
 /// Longest time for which a client that has closed its sending side may wait for its replies [ns].
-constexpr Nanoseconds answer_pause = 2 * ns_per_s;
+constexpr Nanoseconds half_closed_timeout = 2 * ns_per_s;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ tl::expected<SocketServer, std::string> SocketServer::listen(const rig::SocketSe
   const auto add = [&server](Role role, const rig::SocketFile& file) -> std::string {
     auto listener = Listener::open(file);
     if (!listener) return std::move(listener.error());
-    server.listeners_.push_back({role, std::move(*listener)});
+    server.endpoints_.push_back({role, std::move(*listener)});
     return {};
   };
   std::string problem = add(Role::operate, settings);
@@ -63,39 +63,40 @@ SocketServer::~SocketServer() = default;
 
 void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   now_ = now;
-  const bool accepts = now >= accepts_again_;
+  const bool accepts = now >= accept_resumes_at_;
   polled_.clear();
-  for (Entrance& entrance : listeners_)
-    entrance.place = polled_.add(entrance.listener.socket().get(), accepts);
+  for (Endpoint& endpoint : endpoints_)
+    endpoint.poll_entry = polled_.add(endpoint.listener.socket().get(), accepts);
   for (auto& [id, client] : clients_) {
     // Nothing is read from a client that has not read its replies, or that has unprocessed lines from its
     // last turn.
     const bool writes = !client.output.empty();
-    const bool reads = !writes && client.ended_at == 0 && !client.input.has_line();
-    client.place = polled_.add(client.socket.get(), reads, writes);
+    const bool reads = !writes && client.input_ended_at == 0 && !client.input.has_line();
+    client.poll_entry = polled_.add(client.socket.get(), reads, writes);
   }
   // If the wait fails, there are no events, so the result is ignored.
-  static_cast<void>(polled_.wait(lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0)));
+  static_cast<void>(polled_.wait(has_pending_lines_ ? 0 : std::max<Nanoseconds>(until - now, 0)));
   for (auto& [id, client] : clients_) {
-    const net::PollSet::Events events = polled_[client.place];
-    if (events.hangup_or_error()) stop_writing(client);
+    const net::PollSet::Events events = polled_[client.poll_entry];
+    if (events.hangup_or_error()) close_output(client);
     if (events.output()) write_to(client, now);
     if (events.input() || (events.hangup_or_error() && !client.input.has_line())) read_from(client);
-    if (events.invalid()) client.dead = true;
+    if (events.invalid()) client.failed = true;
   }
-  for (const Entrance& entrance : listeners_) {
-    if (polled_[entrance.place].input()) accept_some(entrance);
+  for (const Endpoint& endpoint : endpoints_) {
+    if (polled_[endpoint.poll_entry].input()) accept_clients(endpoint);
   }
-  lines_left_ = false;
+  has_pending_lines_ = false;
   // Clients that may stop or vent the rig are served first.
   for (const Role role : {Role::operate, Role::look}) {
     for (auto& [id, client] : clients_) {
       if (client.role != role) continue;
-      take_lines(id, client);
-      lines_left_ = lines_left_ || (!client.dead && client.output.empty() && client.input.has_line());
+      process_lines(id, client);
+      has_pending_lines_ =
+          has_pending_lines_ || (!client.failed && client.output.empty() && client.input.has_line());
     }
   }
-  sweep(now);
+  remove_finished(now);
 }
 
 std::size_t SocketServer::count_of(Role role) const {
@@ -103,18 +104,18 @@ std::size_t SocketServer::count_of(Role role) const {
       clients_.begin(), clients_.end(), [role](const auto& entry) { return entry.second.role == role; }));
 }
 
-void SocketServer::accept_some(const Entrance& entrance) {
-  const Role role = entrance.role;
+void SocketServer::accept_clients(const Endpoint& endpoint) {
+  const Role role = endpoint.role;
   for (int i = 0; i < most_accepts; ++i) {
-    Descriptor socket = accept_one(entrance);
+    Descriptor socket = accept_one(endpoint);
     if (!socket) return;
-    const bool stands = count_of(role) >= settings_.max_clients && !displace_one(role, false);
-    if (count_of(role) >= settings_.max_clients + most_standing) displace_one(role, true);
+    const bool over_limit = count_of(role) >= settings_.max_clients && !disconnect_one(role, false);
+    if (count_of(role) >= settings_.max_clients + max_over_limit) disconnect_one(role, true);
     Client& client = clients_[++last_id_];
     client.socket = std::move(socket);
     client.role = role;
-    client.active_at = now_;
-    client.stands = stands;
+    client.last_active_at = now_;
+    client.over_limit = over_limit;
     if (handlers_.on_opened) handlers_.on_opened(last_id_, role);
     read_from(client);  // in most cases, the first line of a new client has already arrived
   }
@@ -122,44 +123,46 @@ void SocketServer::accept_some(const Entrance& entrance) {
 
 /// Accepts a new client. If no client waits, returns an invalid descriptor. If no descriptor is free,
 /// disconnects the client that was silent for the longest time, and tries to accept again. A new read-only
-/// client cannot displace a client that may operate the rig. If no client can be disconnected, returns an
+/// client cannot replace a client that may operate the rig. If no client can be disconnected, returns an
 /// invalid descriptor.
-Descriptor SocketServer::accept_one(const Entrance& entrance) {
+Descriptor SocketServer::accept_one(const Endpoint& endpoint) {
   for (;;) {
-    Descriptor socket = net::accept_client(entrance.listener.socket());
+    Descriptor socket = net::accept_client(endpoint.listener.socket());
     if (socket || !net::is_descriptor_shortage(errno)) return socket;
-    if (displace_one(Role::look, true)) continue;
-    if (entrance.role == Role::operate && displace_one(Role::operate, true)) continue;
-    accepts_again_ = now_ + accept_pause;
+    if (disconnect_one(Role::look, true)) continue;
+    if (endpoint.role == Role::operate && disconnect_one(Role::operate, true)) continue;
+    accept_resumes_at_ = now_ + accept_pause;
     return socket;
   }
 }
 
 /// Returns true if the server may disconnect the client to admit another one: the client has ended, or was
-/// silent for too long, or `any` is true. A client that keeps its place is not disconnected, because its
-/// running sequence would lose its owner.
-bool SocketServer::may_go(std::uint64_t id, const Client& client, bool any) const {
-  if (client.ended_at != 0) return true;
-  if (handlers_.keeps_place && handlers_.keeps_place(id)) return false;
-  return any || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
+/// silent for too long, or `force` is true. A client that keeps its connection is not disconnected, because
+/// its running sequence would lose its owner.
+bool SocketServer::may_disconnect(std::uint64_t id, const Client& client, bool force) const {
+  if (client.input_ended_at != 0) return true;
+  if (handlers_.keeps_connection && handlers_.keeps_connection(id)) return false;
+  return force ||
+         now_ - client.last_active_at >= (client.has_sent_line ? client_idle_timeout : first_request_timeout);
 }
 
 /// Disconnects one client of the role to admit another one, if possible. The order of preference is: a client
-/// that has ended, a client without a place, a client that never sent a line, and the client that was silent
+/// that has ended, a client over the limit, a client that never sent a line, and the client that was silent
 /// for the longest time. Returns false if no client may be disconnected.
-bool SocketServer::displace_one(Role role, bool any) {
+bool SocketServer::disconnect_one(Role role, bool force) {
   const auto rank = [](const Client& client) {
-    return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
+    return std::tuple(client.input_ended_at == 0, !client.over_limit, client.has_sent_line,
+                      client.last_active_at);
   };
   auto found = clients_.end();
   for (auto entry = clients_.begin(); entry != clients_.end(); ++entry) {
     const Client& client = entry->second;
-    if (client.role != role || !may_go(entry->first, client, any)) continue;
+    if (client.role != role || !may_disconnect(entry->first, client, force)) continue;
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
   // An error of send() is ignored, because the server does not wait for a client that does not read.
-  const std::string line = too_many();
+  const std::string line = too_many_clients_line();
   [[maybe_unused]] const ssize_t sent =
       ::send(found->second.socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
   const std::uint64_t id = found->first;
@@ -168,7 +171,7 @@ bool SocketServer::displace_one(Role role, bool any) {
   return true;
 }
 
-std::string SocketServer::too_many() const {
+std::string SocketServer::too_many_clients_line() const {
   return error_line(
       std::nullopt, "too_many_clients",
       fmt::format(
@@ -176,39 +179,40 @@ std::string SocketServer::too_many() const {
           settings_.max_clients));
 }
 
-void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line) {
-  const bool places = !client.stands && !client.deaf;
-  if (places || (handlers_.is_urgent && handlers_.is_urgent(line))) {
+void SocketServer::process_line(std::uint64_t id, Client& client, std::string_view line) {
+  const bool within_limit = !client.over_limit && !client.output_closed;
+  if (within_limit || (handlers_.is_urgent && handlers_.is_urgent(line))) {
     handlers_.on_line(id, line);
-  } else if (!client.deaf) {
-    send(id, too_many(), false);
+  } else if (!client.output_closed) {
+    send(id, too_many_clients_line(), false);
     client.closing = true;
   }
-  // A client without a place may send one line and wait for the reply to this line.
-  if (client.stands) client.ended_at = now_;
+  // A client over the limit may send one line and wait for the reply to this line.
+  if (client.over_limit) client.input_ended_at = now_;
 }
 
 void SocketServer::read_from(Client& client) {
   if (client.closing) return;
   // A client such as `echo ... | socat` closes its sending side, but waits for the reply.
-  if (client.input.receive(client.socket.get()) == net::LineBuffer::Received::end) client.ended_at = now_;
+  if (client.input.receive(client.socket.get()) == net::LineBuffer::Received::end)
+    client.input_ended_at = now_;
 }
 
 /// Processes the lines of a client until the client's turn ends, or until the client has unread replies.
-void SocketServer::take_lines(std::uint64_t id, Client& client) {
+void SocketServer::process_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
   bool too_long = false;
-  while (!client.dead && client.output.empty()) {
+  while (!client.failed && client.output.empty()) {
     const auto next = client.input.next();
     if (!next) break;
     const std::string_view line = net::without_cr(*next);
     too_long = line.size() > settings_.max_line_bytes;
     if (too_long) break;
-    client.active_at = now_;
-    client.spoke = true;
-    if (!line.empty()) hear(id, client, line);
-    if (client.stands) client.input.clear();
-    if (std::chrono::steady_clock::now() - began > longest_turn) break;
+    client.last_active_at = now_;
+    client.has_sent_line = true;
+    if (!line.empty()) process_line(id, client, line);
+    if (client.over_limit) client.input.clear();
+    if (std::chrono::steady_clock::now() - began > max_turn_time) break;
   }
   if (too_long || client.input.exceeds(settings_.max_line_bytes)) {
     send(id,
@@ -224,9 +228,10 @@ bool SocketServer::send(std::uint64_t id, std::string_view line, bool skippable)
   const auto found = clients_.find(id);
   if (found == clients_.end()) return false;
   Client& client = found->second;
-  if (client.dead || client.deaf || client.closing || (skippable && !client.output.empty())) return false;
+  if (client.failed || client.output_closed || client.closing || (skippable && !client.output.empty()))
+    return false;
   if (client.output.size() + line.size() > settings_.max_queue_bytes) {
-    client.dead = true;
+    client.failed = true;
     return false;
   }
   client.output += line;
@@ -244,31 +249,31 @@ void SocketServer::write_to(Client& client, Nanoseconds now) {
       return;
     }
     if (count < 0) {
-      stop_writing(client);
+      close_output(client);
       return;
     }
     client.output.erase(0, static_cast<std::size_t>(count));
     client.stalled_since = 0;
-    client.active_at = now;
+    client.last_active_at = now;
   }
 }
 
 /// Sends nothing more to a client that has closed its end. The server still reads the lines that the client
 /// sent before, because they may contain a stop or a vent.
-void SocketServer::stop_writing(Client& client) {
-  client.deaf = true;
+void SocketServer::close_output(Client& client) {
+  client.output_closed = true;
   client.output.clear();
   client.stalled_since = 0;
 }
 
-void SocketServer::sweep(Nanoseconds now) {
+void SocketServer::remove_finished(Nanoseconds now) {
   for (auto entry = clients_.begin(); entry != clients_.end();) {
     Client& client = entry->second;
-    const bool stalled = client.stalled_since != 0 && now - client.stalled_since > longest_stall;
-    const bool waits = !client.deaf && now - client.ended_at <= answer_pause;
-    const bool left = client.ended_at != 0 && !waits && !client.input.has_line();
-    const bool done = (client.closing || left) && client.output.empty();
-    if (!client.dead && !stalled && !done) {
+    const bool stalled = client.stalled_since != 0 && now - client.stalled_since > stall_timeout;
+    const bool waits = !client.output_closed && now - client.input_ended_at <= half_closed_timeout;
+    const bool ended = client.input_ended_at != 0 && !waits && !client.input.has_line();
+    const bool done = (client.closing || ended) && client.output.empty();
+    if (!client.failed && !stalled && !done) {
       ++entry;
       continue;
     }

@@ -21,19 +21,20 @@
 
 namespace softgrip::daemon {
 
-/// The listening sockets, one per role, and their clients. Each role has its own maximum number of clients
-/// (places). All functions must be called from one thread.
+/// The listening sockets, one per role, and their clients. Each role has its own maximum number of clients.
+/// All functions must be called from one thread.
 class SocketServer {
  public:
   struct Handlers {
     std::function<void(std::uint64_t client, std::string_view line)> on_line;
     std::function<void(std::uint64_t client)> on_closed;
-    /// Returns true if a line must be processed even if its client has no place. Examples are stop and vent.
+    /// Returns true if a line must be processed even if its client exceeds the maximum number of clients.
+    /// Examples are stop and vent.
     std::function<bool(std::string_view line)> is_urgent;
     /// Called before the first line of a client is processed.
     std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
-    /// Returns true if a client keeps its place although it sends nothing.
-    std::function<bool(std::uint64_t client)> keeps_place = nullptr;
+    /// Returns true if a client keeps its connection although it sends nothing.
+    std::function<bool(std::uint64_t client)> keeps_connection = nullptr;
   };
 
   /// Opens the sockets that `settings` gives (daemon/socket/listener.h). The error is a sentence.
@@ -48,10 +49,10 @@ class SocketServer {
   void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 
   /// Waits for events, at most until `until`. Processes a part of the lines of each client; the next call
-  /// processes the remaining lines. If all places are taken, a new client gets the place of a client that was
-  /// silent for too long and does not keep its place. If there is no such client, the new client may send one
-  /// line, which is refused unless it is urgent. If a client has closed its end, its urgent lines are still
-  /// processed.
+  /// processes the remaining lines. If the maximum number of clients is connected, a new client replaces a
+  /// client that was silent for too long and does not keep its connection. If there is no such client, the
+  /// new client may send one line, which is refused unless it is urgent. If a client has closed its end, its
+  /// urgent lines are still processed.
   void poll(Nanoseconds now, Nanoseconds until);
 
   /// Queues a line for a client. Returns false if the client has disconnected. Also returns false if
@@ -66,51 +67,51 @@ class SocketServer {
     Role role = Role::look;
     net::LineBuffer input;
     std::string output;
-    Nanoseconds stalled_since = 0;  // time since which the client has not read the waiting output; 0: no
-                                    // output waits
-    Nanoseconds ended_at = 0;  // time at which the server read the last line of the client; 0: the client can
-                               // still send lines
-    Nanoseconds active_at = 0;  // time of the last line that was sent to or read from the client; before the
-                                // first line: time of the connection
-    bool spoke = false;         // true: the client has sent a line
-    bool stands = false;        // true: the client was admitted without a place
-    bool closing = false;       // true: the connection is closed after all output is sent
-    bool deaf = false;  // true: the client does not read any more; the server still processes the lines that
-                        // the client sent before
-    bool dead = false;
-    net::PollSet::Entry place;
+    Nanoseconds stalled_since = 0;   // time since which the client has not read the waiting output; 0: no
+                                     // output waits
+    Nanoseconds input_ended_at = 0;  // time at which the server read the last line of the client; 0: the
+                                     // client can still send lines
+    Nanoseconds last_active_at = 0;  // time of the last line that was sent to or read from the client; before
+                                     // the first line: time of the connection
+    bool has_sent_line = false;      // true: the client has sent a line
+    bool over_limit = false;         // true: the client exceeds the maximum number of clients
+    bool closing = false;            // true: the connection is closed after all output is sent
+    bool output_closed = false;  // true: the client does not read any more; the server still processes the
+                                 // lines that the client sent before
+    bool failed = false;
+    net::PollSet::Entry poll_entry;
   };
 
-  struct Entrance {
+  struct Endpoint {
     Role role;
     Listener listener;
-    net::PollSet::Entry place = {};
+    net::PollSet::Entry poll_entry = {};
   };
 
   explicit SocketServer(const rig::SocketSettings& settings) : settings_(settings) {}
   [[nodiscard]] std::size_t count_of(Role role) const;
-  void accept_some(const Entrance& entrance);
-  Descriptor accept_one(const Entrance& entrance);
-  [[nodiscard]] bool may_go(std::uint64_t id, const Client& client, bool any) const;
-  bool displace_one(Role role, bool any);
-  [[nodiscard]] std::string too_many() const;
-  void hear(std::uint64_t id, Client& client, std::string_view line);
+  void accept_clients(const Endpoint& endpoint);
+  Descriptor accept_one(const Endpoint& endpoint);
+  [[nodiscard]] bool may_disconnect(std::uint64_t id, const Client& client, bool force) const;
+  bool disconnect_one(Role role, bool force);
+  [[nodiscard]] std::string too_many_clients_line() const;
+  void process_line(std::uint64_t id, Client& client, std::string_view line);
   void read_from(Client& client);
-  void take_lines(std::uint64_t id, Client& client);
+  void process_lines(std::uint64_t id, Client& client);
   void write_to(Client& client, Nanoseconds now);
-  static void stop_writing(Client& client);
-  void sweep(Nanoseconds now);
+  static void close_output(Client& client);
+  void remove_finished(Nanoseconds now);
 
   rig::SocketSettings settings_;
-  std::vector<Entrance> listeners_;
+  std::vector<Endpoint> endpoints_;
   Handlers handlers_;
   net::PollSet polled_;
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
-  Nanoseconds accepts_again_ = 0;  // time until which the server accepts no clients, because no descriptor
-                                   // was free
-  bool lines_left_ = false;        // true: a client has lines that the next call of poll() must process
+  Nanoseconds accept_resumes_at_ = 0;  // time until which the server accepts no clients, because no
+                                       // descriptor was free
+  bool has_pending_lines_ = false;     // true: a client has lines that the next call of poll() must process
 };
 
 }  // namespace softgrip::daemon

@@ -8,7 +8,7 @@ namespace softgrip::daemon {
 
 void StartLedger::add(KnownStart start, std::uint32_t running) {
   starts_.push_back(std::move(start));
-  if (starts_.size() <= most) return;
+  if (starts_.size() <= capacity) return;
   const bool oldest_runs = starts_.front().request == running;
   starts_.erase(oldest_runs ? std::next(starts_.begin()) : starts_.begin());
 }
@@ -16,7 +16,7 @@ void StartLedger::add(KnownStart start, std::uint32_t running) {
 void StartLedger::forbid(std::string start_id) {
   if (is_forbidden(start_id)) return;
   forbidden_.push_back(std::move(start_id));
-  if (forbidden_.size() > most) forbidden_.pop_front();
+  if (forbidden_.size() > capacity) forbidden_.pop_front();
 }
 
 bool StartLedger::has(std::uint32_t request) const {

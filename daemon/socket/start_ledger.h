@@ -17,15 +17,15 @@ struct KnownStart {
   std::uint64_t client = 0;  ///< connection of the client that requested the start
 };
 
-/// Stores the newest `most` starts, and in addition the start of the running sequence.
+/// Stores the newest `capacity` starts, and in addition the start of the running sequence.
 class StartLedger {
  public:
-  static constexpr std::size_t most = 256;
+  static constexpr std::size_t capacity = 256;
 
   /// Adds a start. `running` is the id of the request whose sequence runs or ran last; 0 if there was none.
   void add(KnownStart start, std::uint32_t running);
   /// Stores the id of a start that must not run, because a stop with this id arrived before the start. Keeps
-  /// the newest `most` ids.
+  /// the newest `capacity` ids.
   void forbid(std::string start_id);
 
   [[nodiscard]] bool has(std::uint32_t request) const;

@@ -39,15 +39,16 @@ Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& n
   Json json = json_of_fault(snapshot.first_fault.code);
   if (json.is_null()) return json;
   const control::Fault& cause = snapshot.cause;
-  const bool gone = cause.code == control::FaultCode::none;
+  const bool is_fault_cleared = cause.code == control::FaultCode::none;
   json["channel"] = fault_title_json(snapshot.first_fault, names)["channel"];
   json["present"] = fault_title_json(cause, names);
   json["next"] =
-      gone ? "The cause is gone: `softgrip acknowledge` clears the fault; nothing moves until the next start."
-           : fmt::format(
-                 "The cause is still present: {}. `softgrip acknowledge` clears the fault once the cause is "
-                 "gone.",
-                 title_of(cause, names));
+      is_fault_cleared
+          ? "The cause is gone: `softgrip acknowledge` clears the fault; nothing moves until the next start."
+          : fmt::format(
+                "The cause is still present: {}. `softgrip acknowledge` clears the fault once the cause is "
+                "gone.",
+                title_of(cause, names));
   return json;
 }
 
@@ -124,8 +125,8 @@ Json json_of_sequence(const Service& service, const Snapshot& snapshot) {
             {"step", step},
             {"step_name", step < steps.size() ? steps[step].step.name : ""},
             {"steps", steps.size()}};
-  const bool ended = service.last_ending().request == service.sequence_request();
-  json["ended"] = ended ? Json(control::name_of(service.last_ending().end)) : Json(nullptr);
+  const bool ended = service.last_finished().request == service.sequence_request();
+  json["ended"] = ended ? Json(control::name_of(service.last_finished().end)) : Json(nullptr);
   return json;
 }
 

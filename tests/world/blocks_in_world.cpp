@@ -82,13 +82,13 @@ class BlocksInWorld final : public Guest {
     const bool disturbed = excuse.paused || excuse.no_line;
     for (Started& started : started_) {
       if (started.life != life_ || !started.request) continue;
-      const bool runs = daemon->service.runs(*started.request);
+      const bool runs = daemon->service.is_running(*started.request);
       if (started.left) started.waited = disturbed ? 0 : started.waited + passed;
       if (runs && started.confirmed)
         breaks(ends_with_block, "the daemon has confirmed the stop, but the sequence is still running");
       if (runs && started.waited > block_end_bound)
         breaks(ends_with_block, "the sequence is running 2 s after its stop was sent");
-      const daemon::Service::Ending& ending = daemon->service.last_ending();
+      const daemon::Service::FinishedSequence& ending = daemon->service.last_finished();
       if (ending.request == *started.request && ending.end == control::SequenceEnd::stopped &&
           !started.left && !started.halted)
         breaks(stops_no_other, "a sequence was stopped without a request of a client");

@@ -143,7 +143,7 @@ void DaemonInWorld::serve() {
     request = requests_.erase(request);
   }
   for (auto asked = unanswered_.begin(); asked != unanswered_.end();) {
-    const bool open = service.take_answer(asked->first).kind == daemon::Service::Answer::Kind::pending;
+    const bool open = service.take_reply(asked->first).kind == daemon::Service::Reply::Kind::pending;
     asked = open ? std::next(asked) : unanswered_.erase(asked);
   }
 }

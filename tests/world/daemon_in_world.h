@@ -122,7 +122,7 @@ class DaemonInWorld {
   void recorder_body();
   void look_after();
   void serve();
-  [[nodiscard]] bool over() const { return asked_to_end_ || (one_shot_run && one_shot_run->over()); }
+  [[nodiscard]] bool over() const { return asked_to_end_ || (one_shot_run && one_shot_run->finished()); }
 
   Scheduler& scheduler_;
   std::vector<ActorId> actors_;

@@ -46,23 +46,23 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
   api_.on_line(arrival.client, arrival.line->dump(), now);
   // The sequence loader runs in a real thread, so wait until it has finished. The simulated time does not
   // advance during this wait.
-  while (api_.loads()) {
+  while (api_.is_loading()) {
     std::this_thread::sleep_for(std::chrono::microseconds(20));
-    api_.on_time(now);
+    api_.update(now);
   }
 }
 
 void SocketInWorld::serve(Nanoseconds now) {
   // Before the lines of the clients, send the periodic messages that are due. Their contents then do not
   // depend on the number of lines.
-  api_.on_time(now);
-  api_.on_time(now);
+  api_.update(now);
+  api_.update(now);
   while (!arrivals_.empty()) {
     const Arrival arrival = std::move(arrivals_.front());
     arrivals_.pop_front();
     take(arrival, now);
   }
-  api_.on_time(now);
+  api_.update(now);
 }
 
 }  // namespace softgrip::world

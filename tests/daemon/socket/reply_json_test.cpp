@@ -20,8 +20,8 @@ TEST(ReplyJson, AGreetingListsTheCommandsOfTheRole) {
   EXPECT_EQ(operating["client"], "cell");
   EXPECT_EQ(operating["role"], "operate");
   EXPECT_EQ(operating["read_only"], false);
-  const auto may = [](const auto& greeting, const char* command) {
-    const auto& commands = greeting["commands"];
+  const auto may = [](const auto& hello, const char* command) {
+    const auto& commands = hello["commands"];
     return std::find(commands.begin(), commands.end(), command) != commands.end();
   };
   EXPECT_TRUE(may(operating, "vent"));

@@ -57,13 +57,13 @@ class SocketServerTest : public ::testing::Test {
                              [this](std::uint64_t) { ++closed_; },
                              [](std::string_view line) { return line.rfind("urgent", 0) == 0; },
                              [this](std::uint64_t, Role role) { opened_.push_back(role); },
-                             [this](std::uint64_t client) { return keeps_.contains(client); }});
+                             [this](std::uint64_t client) { return protected_.contains(client); }});
     }
     return *server_;
   }
-  /// Polls the server `looks` times. Advances the time by `step` before each poll.
-  void turn(int looks = 5, Nanoseconds step = 0) {
-    for (int i = 0; i < looks; ++i) {
+  /// Polls the server `cycles` times. Advances the time by `step` before each poll.
+  void turn(int cycles = 5, Nanoseconds step = 0) {
+    for (int i = 0; i < cycles; ++i) {
       now_ += step;
       server().poll(now_, now_ + 1'000'000);
     }
@@ -87,7 +87,7 @@ class SocketServerTest : public ::testing::Test {
   std::vector<std::string> lines_;
   std::function<void(std::uint64_t, std::string_view)> answer_;
   std::vector<Role> opened_;
-  std::set<std::uint64_t> keeps_;
+  std::set<std::uint64_t> protected_;
   int closed_ = 0;
   Nanoseconds now_ = MonotonicClock().now();
 };
@@ -237,7 +237,7 @@ TEST_F(SocketServerTest, TheLongestSilentClientIsDisconnectedFirst) {
 }
 
 TEST_F(SocketServerTest, AProtectedClientIsNeverDisplaced) {
-  keeps_ = {1, 3};
+  protected_ = {1, 3};
   server();
   std::vector<Descriptor> clients;
   for (int i = 0; i < 3; ++i) {
@@ -251,7 +251,7 @@ TEST_F(SocketServerTest, AProtectedClientIsNeverDisplaced) {
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
       << "a silent client that does not receive events is disconnected";
-  keeps_.insert(4);
+  protected_.insert(4);
   turn(1, 60 * ns_per_s);
   const Descriptor late = connect_to(settings_.path);
   send_text(late, "and I\n");
@@ -271,10 +271,10 @@ TEST_F(SocketServerTest, ReadOnlyClientsHaveASeparateClientLimit) {
   settings_.look.path = temporary_.path() + "/look";
   settings_.look.mode = 0666;
   server();
-  std::vector<Descriptor> lookers;
+  std::vector<Descriptor> viewers;
   for (int i = 0; i < 3; ++i) {
-    lookers.push_back(connect_to(settings_.look.path));
-    send_text(lookers.back(), "hello\n");
+    viewers.push_back(connect_to(settings_.look.path));
+    send_text(viewers.back(), "hello\n");
     turn();
   }
   const Descriptor operating = connect_to(settings_.path);
@@ -297,11 +297,11 @@ TEST_F(SocketServerTest, ReadOnlyClientsHaveASeparateClientLimit) {
 TEST_F(SocketServerTest, OperatorsAreServedBeforeReadOnlyClients) {
   settings_.look.path = temporary_.path() + "/look";
   server();
-  const Descriptor looking = connect_to(settings_.look.path);
+  const Descriptor viewer = connect_to(settings_.look.path);
   turn();
   const Descriptor operating = connect_to(settings_.path);
   turn();
-  send_text(looking, "first\n");
+  send_text(viewer, "first\n");
   send_text(operating, "second\n");
   turn(1);
   EXPECT_EQ(lines_, (std::vector<std::string>{"second", "first"}));
@@ -309,10 +309,10 @@ TEST_F(SocketServerTest, OperatorsAreServedBeforeReadOnlyClients) {
 
 TEST_F(SocketServerTest, ManyClientsDoNotBlockAnUrgentLine) {
   server();
-  std::vector<Descriptor> crowd;
+  std::vector<Descriptor> excess_clients;
   for (int i = 0; i < 300; ++i) {
-    crowd.push_back(connect_to(settings_.path));
-    if (i % 3 != 0) send_text(crowd.back(), "noise\nnoise\nnoise\n");
+    excess_clients.push_back(connect_to(settings_.path));
+    if (i % 3 != 0) send_text(excess_clients.back(), "noise\nnoise\nnoise\n");
     turn(1);
   }
   lines_.clear();
@@ -327,11 +327,11 @@ TEST_F(SocketServerTest, AClientWithManyRequestsDoesNotBlockOthers) {
     if (line == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(5));
   };
   server();
-  const Descriptor greedy = connect_to(settings_.path);
+  const Descriptor busy_client = connect_to(settings_.path);
   const Descriptor other = connect_to(settings_.path);
   std::string questions;
   for (int i = 0; i < 1000; ++i) questions += "slow\n";
-  send_text(greedy, questions);
+  send_text(busy_client, questions);
   turn(2);
   send_text(other, "me\n");
   turn(2);
