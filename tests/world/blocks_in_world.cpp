@@ -125,7 +125,7 @@ class BlocksInWorld final : public Guest {
 
   /// Sends the stop request immediately. Unlike other requests, it is not preceded by a status query.
   void leave(daemon::ClientId client, Started& started, std::uint64_t life) {
-    Json line = tools::stop_of(started.id);
+    Json line = tools::stop_request_for(started.id);
     line["id"] = stop_line;
     around_.trace("the client of {} leaves its block", started.id);
     started.left = true;

@@ -45,7 +45,7 @@ ClientFailure cannot_connect(const std::string& path, int error) {
 
 }  // namespace
 
-std::string listed(const Json& problems) {
+std::string problem_list(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
     text += "\n" + problem.value("file", "");
@@ -66,7 +66,7 @@ ClientFailure failure_of(const Json& error) {
   const std::string code = error.value("code", "");
   const std::string message = error.value("message", "the daemon gave no reason for the refusal");
   if (code == "sequence_refused") {
-    return {ExitCode::input_refused, message + listed(error.value("problems", Json::array()))};
+    return {ExitCode::input_refused, message + problem_list(error.value("problems", Json::array()))};
   }
   if (code == "refused") {
     const Json refusal = error.value("refusal", Json::object());
@@ -80,16 +80,16 @@ ClientFailure failure_of(const Json& error) {
 }  // namespace
 
 std::string default_socket_path() {
-  const char* named = std::getenv("SOFTGRIP_SOCKET");
-  return named != nullptr && *named != '\0' ? named : "/run/softgrip/softgripd.sock";
+  const char* configured = std::getenv("SOFTGRIP_SOCKET");
+  return configured != nullptr && *configured != '\0' ? configured : "/run/softgrip/softgripd.sock";
 }
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path) {
-  return connect(path, 0, longest_answer);
+  return connect(path, 0, reply_timeout);
 }
 
-tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
-  auto client = connect(path, SOCK_NONBLOCK, longest_send);
+tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_without_waiting(const std::string& path) {
+  auto client = connect(path, SOCK_NONBLOCK, send_timeout);
   // connect() must not block. From here on the socket may block, so that send() sends each line completely.
   if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
   return client;
@@ -116,10 +116,10 @@ void DaemonClient::send(const Json& request) {
     const ssize_t count = ::send(socket_.get(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
-      deaf_ = errno == EAGAIN || errno == EWOULDBLOCK;
+      send_timed_out_ = errno == EAGAIN || errno == EWOULDBLOCK;
       // The daemon has a partial request and would join it with the next request, so the connection is
       // closed.
-      if (deaf_) ::shutdown(socket_.get(), SHUT_RDWR);
+      if (send_timed_out_) ::shutdown(socket_.get(), SHUT_RDWR);
       return;
     }
     sent += static_cast<std::size_t>(count);
@@ -131,18 +131,18 @@ tl::expected<Json, ClientFailure> DaemonClient::result_of(const Json& answer) {
   return answer.value("result", Json::object());
 }
 
-tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::chrono::milliseconds patience) {
+tl::expected<Json, ClientFailure> DaemonClient::call(const Json& request, std::chrono::milliseconds timeout) {
   send(request);
-  const auto answer = next_line(patience);
+  const auto answer = next_line(timeout);
   if (!answer) return tl::unexpected{answer.error()};
   if (!*answer)
     return tl::unexpected{ClientFailure{ExitCode::io, "the daemon at " + path_ + " does not respond"}};
   return result_of(**answer);
 }
 
-tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::chrono::milliseconds patience) {
+tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::chrono::milliseconds timeout) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point end = Clock::now() + patience;
+  const Clock::time_point end = Clock::now() + timeout;
   auto next = pending_.next();
   for (; !next; next = pending_.next()) {
     if (pending_.exceeds(longest_line)) return tl::unexpected{malformed("a line is longer than 8 MiB")};
@@ -151,7 +151,8 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
     const int ready = ::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
     if (ready < 0 && errno == EINTR) return std::optional<Json>{};
     if (ready == 0) return std::optional<Json>{};
-    if (pending_.receive(socket_.get()) != net::LineBuffer::Received::bytes) return tl::unexpected{gone()};
+    if (pending_.receive(socket_.get()) != net::LineBuffer::Received::bytes)
+      return tl::unexpected{connection_closed()};
   }
   auto line = parse_reply(*next);
   if (!line) return tl::unexpected{malformed(line.error())};
@@ -165,38 +166,38 @@ ClientFailure DaemonClient::malformed(const std::string& why) {
   return {ExitCode::io, "softgripd sent a malformed reply: " + why};
 }
 
-ClientFailure DaemonClient::gone() const {
-  return {ExitCode::io,
-          "the daemon at " + path_ + (deaf_ ? " does not accept requests" : " closed the connection")};
+ClientFailure DaemonClient::connection_closed() const {
+  return {ExitCode::io, "the daemon at " + path_ +
+                            (send_timed_out_ ? " does not accept requests" : " closed the connection")};
 }
 
 bool daemon_runs(const std::string& path) {
   const auto client = DaemonClient::connect(path);
-  return client.has_value() || !client.error().nobody_listens;
+  return client.has_value() || !client.error().no_listener;
 }
 
 bool DaemonLink::connect(Nanoseconds now) {
   constexpr Nanoseconds retry_pause = ns_per_s / 4;
-  if (client_ || (tried_at_ != 0 && now - tried_at_ < retry_pause)) return false;
-  tried_at_ = now;
+  if (client_ || (last_attempt_at_ != 0 && now - last_attempt_at_ < retry_pause)) return false;
+  last_attempt_at_ = now;
   return !connect_now();
 }
 
 std::optional<ClientFailure> DaemonLink::connect_now() {
   if (client_) return std::nullopt;
-  auto client = DaemonClient::connect_at_once(path_);
+  auto client = DaemonClient::connect_without_waiting(path_);
   if (!client) return std::move(client.error());
   client_.emplace(std::move(*client));
   return std::nullopt;
 }
 
-bool DaemonLink::hear(const std::function<void(nlohmann::ordered_json&)>& take) {
+bool DaemonLink::receive_lines(const std::function<void(nlohmann::ordered_json&)>& on_line) {
   while (client_) {
     auto line = client_->next_line(std::chrono::milliseconds(0));
     if (!line) {
       client_.reset();
     } else if (*line) {
-      take(**line);
+      on_line(**line);
     } else {
       return true;
     }

@@ -24,25 +24,26 @@ namespace softgrip::tools {
 
 /// Returns the text of the problems that the daemon found in a sequence. Each problem begins a new line:
 /// "file:line:col: message".
-[[nodiscard]] std::string listed(const nlohmann::ordered_json& problems);
+[[nodiscard]] std::string problem_list(const nlohmann::ordered_json& problems);
 
 /// The reason why a request failed, as text for the user, and the exit code of the program.
 struct ClientFailure {
   ExitCode code = ExitCode::io;
   std::string message;
-  bool nobody_listens = false;  ///< true: no daemon listens on this socket
+  bool no_listener = false;  ///< true: no daemon listens on this socket
 };
 
 class DaemonClient {
  public:
-  static constexpr std::chrono::milliseconds longest_answer{5000};
+  static constexpr std::chrono::milliseconds reply_timeout{5000};
 
   /// Connects to the daemon. If no daemon runs, the failure explains how to start one.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
   /// Connects without waiting. Fails if the daemon's queue of unaccepted connections is full. Sending a later
-  /// request takes at most `longest_send`. For the function connect() above, this limit is `longest_answer`.
-  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
-  static constexpr std::chrono::milliseconds longest_send{50};
+  /// request takes at most `send_timeout`. For the function connect() above, this limit is `reply_timeout`.
+  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_without_waiting(
+      const std::string& path);
+  static constexpr std::chrono::milliseconds send_timeout{50};
 
   /// Sends a request and does not wait for the response. If the daemon does not accept the request in time,
   /// the connection ends. After a failure, next_line() first returns all lines that the daemon sent before
@@ -55,13 +56,13 @@ class DaemonClient {
 
   /// Sends a request and returns the `result` of its response. Returns a failure with ExitCode::state_refused
   /// if the daemon refuses the request, and with ExitCode::input_refused if it refuses a sequence.
-  [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(
-      const nlohmann::ordered_json& request, std::chrono::milliseconds patience = longest_answer);
+  [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> call(
+      const nlohmann::ordered_json& request, std::chrono::milliseconds timeout = reply_timeout);
 
-  /// Returns the next line of the daemon, for example a status, or nullopt after `patience`. parse_reply()
+  /// Returns the next line of the daemon, for example a status, or nullopt after `timeout`. parse_reply()
   /// checks each line. A malformed line ends the connection and returns a failure with ExitCode::io.
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
-      std::chrono::milliseconds patience);
+      std::chrono::milliseconds timeout);
 
   /// Returns the file descriptor of the socket. The caller uses it for poll().
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
@@ -70,13 +71,13 @@ class DaemonClient {
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(
       const std::string& path, int flags, std::chrono::milliseconds send_limit);
   DaemonClient(Descriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
-  [[nodiscard]] ClientFailure gone() const;
+  [[nodiscard]] ClientFailure connection_closed() const;
   [[nodiscard]] ClientFailure malformed(const std::string& why);
 
   Descriptor socket_;
   std::string path_;
   net::LineBuffer pending_;
-  bool deaf_ = false;  // true: the daemon did not accept a request in time
+  bool send_timed_out_ = false;  // true: the daemon did not accept a request in time
 };
 
 /// Returns true if a daemon listens on this socket. The daemon then controls the board, even if it does not
@@ -96,9 +97,10 @@ class DaemonLink {
   [[nodiscard]] bool connect(Nanoseconds now);
   /// Connects if there is no connection. If this fails, returns the reason.
   [[nodiscard]] std::optional<ClientFailure> connect_now();
-  /// Passes the lines that have arrived from the daemon to `take`. Returns false if the connection has ended.
-  [[nodiscard]] bool hear(const std::function<void(nlohmann::ordered_json&)>& take);
-  void end() noexcept { client_.reset(); }
+  /// Passes the lines that have arrived from the daemon to `on_line`. Returns false if the connection has
+  /// ended.
+  [[nodiscard]] bool receive_lines(const std::function<void(nlohmann::ordered_json&)>& on_line);
+  void disconnect() noexcept { client_.reset(); }
   [[nodiscard]] explicit operator bool() const noexcept { return client_.has_value(); }
   /// Sends a request to the daemon. There must be a connection.
   void send(const nlohmann::ordered_json& request) { client_->send(request); }
@@ -108,7 +110,7 @@ class DaemonLink {
  private:
   std::string path_;
   std::optional<DaemonClient> client_;
-  Nanoseconds tried_at_ = 0;  // time of the last attempt to connect by connect()
+  Nanoseconds last_attempt_at_ = 0;  // time of the last attempt to connect by connect()
 };
 
 }  // namespace softgrip::tools

@@ -38,10 +38,10 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options) {
   command.add_flag("--json", options.json, "Print the result as JSON");
 }
 
-tl::expected<Json, ExitCode> ask_daemon(const DaemonOptions& options, const Json& request) {
+tl::expected<Json, ExitCode> call_daemon(const DaemonOptions& options, const Json& request) {
   auto client = DaemonClient::connect(options.socket);
   if (!client) return tl::unexpected{fail(client.error().code, client.error().message)};
-  auto result = client->ask(request);
+  auto result = client->call(request);
   if (!result) return tl::unexpected{fail(result.error().code, result.error().message)};
   return std::move(*result);
 }
@@ -52,7 +52,7 @@ void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& 
   CLI::App* command = program.add_subcommand(name, meaning);
   add_daemon_options(*command, *options);
   command->callback([options, &outcome, name, done = std::move(done)] {
-    const auto result = ask_daemon(*options, {{"command", name}});
+    const auto result = call_daemon(*options, {{"command", name}});
     if (!result) {
       outcome = result.error();
     } else if (options->json) {
@@ -72,10 +72,10 @@ namespace {
 
 /// Waits at most 3 s until the rig is idle or faulted, and returns `under_pressure` of the rig's status.
 /// Returns null if no finger is pressurised, or if the rig still moves after 3 s.
-Json pressure_left(DaemonClient& client) {
+Json pressurised_fingers(DaemonClient& client) {
   constexpr std::chrono::milliseconds pause{20};
   for (int looks = 0; looks < 150; ++looks) {
-    const auto status = client.ask({{"command", "status"}});
+    const auto status = client.call({{"command", "status"}});
     if (!status) return nullptr;
     const std::string state = status->value("state", "");
     if (state == "idle" || state == "faulted") return status->value("under_pressure", Json());
@@ -87,18 +87,18 @@ Json pressure_left(DaemonClient& client) {
 ExitCode end_motion(const DaemonOptions& options, const std::string& name, const std::string& done) {
   auto client = DaemonClient::connect(options.socket);
   if (!client) return fail(client.error().code, client.error().message);
-  auto result = client->ask({{"command", name}});
+  auto result = client->call({{"command", name}});
   if (!result) return fail(result.error().code, result.error().message);
   if (!options.json) {
     std::printf("%s\n", done.c_str());
     std::fflush(stdout);
   }
-  Json left = pressure_left(*client);
+  Json pressurised = pressurised_fingers(*client);
   if (options.json) {
-    (*result)["under_pressure"] = std::move(left);
+    (*result)["under_pressure"] = std::move(pressurised);
     print_json(*result);
-  } else if (left.is_object()) {
-    std::printf("%s\n", document::shown(left.value("text", ""), 1000).c_str());
+  } else if (pressurised.is_object()) {
+    std::printf("%s\n", document::shown(pressurised.value("text", ""), 1000).c_str());
   }
   return ExitCode::done;
 }

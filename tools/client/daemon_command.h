@@ -24,7 +24,7 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options);
 
 /// Connects to the daemon, sends one request and returns the result of the request. If this fails, prints the
 /// message of the failure.
-[[nodiscard]] tl::expected<nlohmann::ordered_json, ExitCode> ask_daemon(
+[[nodiscard]] tl::expected<nlohmann::ordered_json, ExitCode> call_daemon(
     const DaemonOptions& options, const nlohmann::ordered_json& request);
 
 /// Adds a subcommand that sends one request without arguments. `name` is the name of the subcommand and of

@@ -25,8 +25,8 @@ class Trend {
   void add(double time_s, std::optional<double> value);
 
   /// Returns at most `cells` characters, one per second, the newest second last. Each character is one column
-  /// wide. The scale covers the shown values, and its span is at least `least_span` (> 0).
-  [[nodiscard]] std::vector<std::string> glyphs(std::size_t cells, double least_span, bool unicode) const;
+  /// wide. The scale covers the shown values, and its span is at least `min_span` (> 0).
+  [[nodiscard]] std::vector<std::string> glyphs(std::size_t cells, double min_span, bool unicode) const;
 
  private:
   std::deque<std::optional<double>> values_;
@@ -46,7 +46,7 @@ struct StatusParts {
   std::vector<std::vector<std::string>> channels;
   std::vector<std::string> board;  ///< lines about the connection to the board and the attempts to restore
                                    ///< this connection
-  std::vector<std::string> machinery;  ///< lines about the state of the control loop and of the recording
+  std::vector<std::string> internals;  ///< lines about the state of the control loop and of the recording
 };
 /// Formats the parts of a status. If `trends` contains one element per channel, trends are shown in place of
 /// bars.
@@ -72,7 +72,7 @@ struct StatusParts {
 
 /// Replaces the control characters in each line of a text by visible characters, so that a terminal does not
 /// execute them.
-[[nodiscard]] std::string shown_lines(std::string_view text);
+[[nodiscard]] std::string escape_control_characters(std::string_view text);
 
 /// Formats the response to an acknowledgement: "acknowledged F202 reading_out_of_range of left; nothing moves
 /// until the next start".

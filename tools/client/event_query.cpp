@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t page = 1000;
+constexpr std::size_t page_size = 1000;
 
 std::size_t rank_of(std::string_view severity) {
   return severity == "error" ? 2U : severity == "warning" ? 1U : 0U;
@@ -32,7 +32,7 @@ std::optional<Nanoseconds> duration_of(std::string_view number, std::string_view
 
 /// Parses a local time of day or date. Units that are missing in the text are taken from `now` if they are
 /// larger than the units in the text, for example the date. Missing smaller units are 0.
-std::optional<Nanoseconds> local_moment(const std::string& text, Nanoseconds now) {
+std::optional<Nanoseconds> parse_local_time(const std::string& text, Nanoseconds now) {
   const time_t now_s = now / ns_per_s;
   for (const char* format : {"%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%Y-%m-%d", "%H:%M:%S", "%H:%M"}) {
     tm parts{};
@@ -52,35 +52,35 @@ std::optional<Since> parse_since(const std::string& text, Nanoseconds now) {
   if (!text.empty() && digits == text.size() && digits < 17) {
     return Since{std::strtoull(text.c_str(), nullptr, 10), {}};
   }
-  std::optional<Nanoseconds> moment;
+  std::optional<Nanoseconds> time;
   if (digits > 0) {
     const auto before =
         duration_of(std::string_view(text).substr(0, digits), std::string_view(text).substr(digits));
-    if (before) moment = now - *before;
+    if (before) time = now - *before;
   }
-  if (!moment) moment = local_moment(text, now);
-  if (!moment) return std::nullopt;
-  return Since{0, utc_text(*moment, 3)};
+  if (!time) time = parse_local_time(text, now);
+  if (!time) return std::nullopt;
+  return Since{0, utc_text(*time, 3)};
 }
 
-bool wanted(const EventQuery& query, const Json& event) {
+bool matches(const EventQuery& query, const Json& event) {
   return event.value("id", std::uint64_t{0}) > query.since.id && event.value("at", "") >= query.since.at &&
          rank_of(event.value("severity", "")) >= rank_of(query.severity);
 }
 
-tl::expected<std::vector<Json>, ClientFailure> events_of(DaemonClient& client, const EventQuery& query,
-                                                         std::uint64_t& newest) {
+tl::expected<std::vector<Json>, ClientFailure> query_events(DaemonClient& client, const EventQuery& query,
+                                                            std::uint64_t& newest) {
   std::vector<Json> found;
   newest = query.since.id;
   for (;;) {
-    const auto result = client.ask({{"command", "events"}, {"since", newest}, {"limit", page}});
+    const auto result = client.call({{"command", "events"}, {"since", newest}, {"limit", page_size}});
     if (!result) return tl::unexpected{result.error()};
     const Json events = result->value("events", Json::array());
     for (const Json& event : events) {
       newest = std::max(newest, event.value("id", newest));
-      if (wanted(query, event)) found.push_back(event);
+      if (matches(query, event)) found.push_back(event);
     }
-    if (events.size() < page) break;
+    if (events.size() < page_size) break;
   }
   if (found.size() > query.lines) found.erase(found.begin(), found.end() - static_cast<long>(query.lines));
   return found;

@@ -34,11 +34,11 @@ struct EventQuery {
 };
 
 /// Returns true if the event has the required id, time and severity. This function does not use `lines`.
-[[nodiscard]] bool wanted(const EventQuery& query, const nlohmann::ordered_json& event);
+[[nodiscard]] bool matches(const EventQuery& query, const nlohmann::ordered_json& event);
 
 /// Returns the events that a query selects, the newest event last. Sets `newest` to the id of the newest
 /// event of the daemon.
-[[nodiscard]] tl::expected<std::vector<nlohmann::ordered_json>, ClientFailure> events_of(
+[[nodiscard]] tl::expected<std::vector<nlohmann::ordered_json>, ClientFailure> query_events(
     DaemonClient& client, const EventQuery& query, std::uint64_t& newest);
 
 }  // namespace softgrip::tools

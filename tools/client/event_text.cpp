@@ -43,7 +43,7 @@ std::string line_of_event(const nlohmann::ordered_json& event) {
   return time + " s  " + text;
 }
 
-std::string shown_lines(std::string_view text) {
+std::string escape_control_characters(std::string_view text) {
   constexpr std::size_t longest_line = 300;
   std::string shown;
   while (!text.empty()) {

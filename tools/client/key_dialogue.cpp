@@ -22,49 +22,51 @@ std::string_view KeyDialogue::help() {
 }
 
 std::string KeyDialogue::question() const {
-  switch (waiting_) {
-    case Waiting::for_a_key:
+  switch (state_) {
+    case State::idle:
       return {};
-    case Waiting::for_a_name:
-      return "start which sequence" + (offered_.empty() ? "" : " [" + offered_ + "]") + "? " + name_ + "_";
-    case Waiting::for_a_yes:
+    case State::reading_name:
+      return "start which sequence" + (proposed_name_.empty() ? "" : " [" + proposed_name_ + "]") + "? " +
+             name_ + "_";
+    case State::confirming:
       return question_;
   }
   return {};
 }
 
-bool KeyDialogue::lapse(double time_s) {
-  if (waiting_ != Waiting::for_a_yes || time_s - asked_s_ < patience_s) return false;
-  waiting_ = Waiting::for_a_key;
+bool KeyDialogue::expire(double time_s) {
+  if (state_ != State::confirming || time_s - asked_at_s_ < confirmation_timeout_s) return false;
+  state_ = State::idle;
   return true;
 }
 
-void KeyDialogue::ask(Json request, std::string question, double time_s) {
+void KeyDialogue::ask_confirmation(Json request, std::string question, double time_s) {
   request_ = std::move(request);
   question_ = std::move(question) + " y: yes, any other key: no";
-  asked_s_ = time_s;
-  waiting_ = Waiting::for_a_yes;
+  asked_at_s_ = time_s;
+  state_ = State::confirming;
 }
 
-KeyDialogue::Outcome KeyDialogue::take(std::string_view typed, double time_s, const std::string& ran) {
-  lapse(time_s);
+KeyDialogue::Outcome KeyDialogue::process(std::string_view typed, double time_s,
+                                          const std::string& last_sequence) {
+  expire(time_s);
   // An escape character alone is the escape key. If more characters follow the escape character, they encode
   // an arrow key or a function key, which is ignored.
   if (typed.size() > 1 && typed.front() == escape_key) return {};
   for (const char one : typed) {
-    const Waiting before = waiting_;
-    Outcome outcome = key(one, time_s, ran);
-    const bool asks = waiting_ == Waiting::for_a_yes && before != waiting_;
-    if (outcome.leave || outcome.request || asks) return outcome;
+    const State before = state_;
+    Outcome outcome = key(one, time_s, last_sequence);
+    const bool is_asked = state_ == State::confirming && before != state_;
+    if (outcome.quit || outcome.request || is_asked) return outcome;
   }
   return {};
 }
 
-KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string& ran) {
+KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string& last_sequence) {
   const auto plain = [](const char* command) { return Outcome{false, Json::object({{"command", command}})}; };
-  if (waiting_ == Waiting::for_a_name) return name_key(key, time_s);
-  if (waiting_ == Waiting::for_a_yes) {
-    waiting_ = Waiting::for_a_key;
+  if (state_ == State::reading_name) return name_key(key, time_s);
+  if (state_ == State::confirming) {
+    state_ = State::idle;
     if (key == 'y' || key == 'Y') return {false, std::move(request_)};
     // The keys for stop and vent are accepted at all times, even if a question waits for its answer.
     if (key != 's' && key != 'v') return {};
@@ -81,12 +83,12 @@ KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string
     case 'a':
       return plain("acknowledge");
     case 'r':
-      ask({{"command", "release"}}, "Release? The fingers open, and held parts drop.", time_s);
+      ask_confirmation({{"command", "release"}}, "Release? The fingers open, and held parts drop.", time_s);
       return {};
     case 'g':
       name_.clear();
-      offered_ = ran;
-      waiting_ = Waiting::for_a_name;
+      proposed_name_ = last_sequence;
+      state_ = State::reading_name;
       return {};
     default:
       return {};
@@ -95,13 +97,14 @@ KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string
 
 KeyDialogue::Outcome KeyDialogue::name_key(char key, double time_s) {
   if (key == '\r' || key == '\n') {
-    const std::string name = name_.empty() ? offered_ : name_;
-    waiting_ = Waiting::for_a_key;
+    const std::string name = name_.empty() ? proposed_name_ : name_;
+    state_ = State::idle;
     if (!name.empty()) {
-      ask({{"command", "start"}, {"sequence", name}}, "Start " + name + "? The fingers will move.", time_s);
+      ask_confirmation({{"command", "start"}, {"sequence", name}},
+                       "Start " + name + "? The fingers will move.", time_s);
     }
   } else if (key == escape_key || key == end_of_transmission) {
-    waiting_ = Waiting::for_a_key;
+    state_ = State::idle;
   } else if (key == backspace || key == delete_key) {
     if (!name_.empty()) name_.pop_back();
   } else if (key == erase_line) {

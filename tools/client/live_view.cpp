@@ -19,7 +19,7 @@ constexpr std::string_view trend_legend = "  trends: 1 column 1 s";
 constexpr std::size_t event_indent = 12;
 /// Smallest number of rows for events. If fewer rows remain, parts of the screen other than the events are
 /// omitted first.
-constexpr std::size_t fewest_event_rows = 3;
+constexpr std::size_t min_event_rows = 3;
 
 void append(Lines& lines, const Lines& more) {
   lines.insert(lines.end(), more.begin(), more.end());
@@ -28,9 +28,9 @@ void append(Lines& lines, const Lines& more) {
 Lines footer_of(const LiveState& state, const ViewStyle& style) {
   Lines lines;
   if (!state.question.empty()) {
-    append(lines, broken(style, state.question, Tone::strong, 2));
-  } else if (!state.said.text.empty()) {
-    append(lines, broken(style, state.said.text, state.said.tone, 2));
+    append(lines, wrap_text(style, state.question, Tone::strong, 2));
+  } else if (!state.message.text.empty()) {
+    append(lines, wrap_text(style, state.message.text, state.message.tone, 2));
   }
   const std::string_view help = KeyDialogue::help();
   Line keys(style);
@@ -42,8 +42,8 @@ Lines footer_of(const LiveState& state, const ViewStyle& style) {
 
 Lines lines_of_event(const Json& event, const ViewStyle& style) {
   const std::string severity = event.value("severity", "");
-  const Tone tone = severity == "error" ? Tone::bad : severity == "warning" ? Tone::doubtful : Tone::plain;
-  return broken(style, brief_line_of_event(event), tone, event_indent);
+  const Tone tone = severity == "error" ? Tone::bad : severity == "warning" ? Tone::warning : Tone::plain;
+  return wrap_text(style, brief_line_of_event(event), tone, event_indent);
 }
 
 /// Returns the newest events that fit completely into `rows` lines, the newest event last.
@@ -58,22 +58,22 @@ Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_
 }
 
 /// Parts of the screen that may be omitted if the screen has few rows.
-struct Arrangement {
+struct Layout {
   bool blanks = true;     ///< true: blank lines separate the parts
-  bool machinery = true;  ///< true: the state of the control loop and of the recording is shown
+  bool internals = true;  ///< true: the state of the control loop and of the recording is shown
 };
 
 /// Returns all lines of the screen except the events and the key help.
-Lines body_of(const StatusParts& parts, const ViewStyle& style, const Arrangement& arrangement) {
+Lines body_of(const StatusParts& parts, const ViewStyle& style, const Layout& layout) {
   Lines lines = parts.head;
   const auto add = [&](const Lines& more) {
-    if (arrangement.blanks) lines.emplace_back();
+    if (layout.blanks) lines.emplace_back();
     append(lines, more);
   };
   for (const Lines& channel : parts.channels) add(channel);
   add(parts.board);
-  if (arrangement.machinery) {
-    append(lines, parts.machinery);
+  if (layout.internals) {
+    append(lines, parts.internals);
   } else {
     lines.push_back(Line(style).add("... enlarge the window for loop and recording", Tone::faint).text());
   }
@@ -82,7 +82,7 @@ Lines body_of(const StatusParts& parts, const ViewStyle& style, const Arrangemen
 
 }  // namespace
 
-void take_status(LiveState& state, Json status) {
+void update_status(LiveState& state, Json status) {
   const double time_s = number_at(status, "time_s").value_or(0);
   const auto list = status.find("channels");
   const Json channels = list != status.end() && list->is_array() ? *list : Json::array();
@@ -99,7 +99,7 @@ void take_status(LiveState& state, Json status) {
   state.status = std::move(status);
 }
 
-void take_event(LiveState& state, Json event) {
+void add_event(LiveState& state, Json event) {
   state.events.push_back(std::move(event));
   if (state.events.size() > events_shown) state.events.pop_front();
 }
@@ -110,17 +110,16 @@ Lines screen_of(const LiveState& state, const ViewStyle& style, std::size_t rows
   const std::size_t room = rows - footer.size();
   const StatusParts parts = parts_of(state.status, style, &state.trends);
   Lines lines;
-  for (const Arrangement& arrangement :
-       {Arrangement{true, true}, Arrangement{false, true}, Arrangement{false, false}}) {
-    lines = body_of(parts, style, arrangement);
-    if (lines.size() + 1 + fewest_event_rows <= room) break;
+  for (const Layout& layout : {Layout{true, true}, Layout{false, true}, Layout{false, false}}) {
+    lines = body_of(parts, style, layout);
+    if (lines.size() + 1 + min_event_rows <= room) break;
   }
   if (lines.size() > room && room > 0) {
     const std::size_t hidden = lines.size() - room + 1;
     lines.resize(room - 1);
     lines.push_back(
         Line(style)
-            .add("... " + std::to_string(hidden) + " more lines: enlarge the window", Tone::doubtful)
+            .add("... " + std::to_string(hidden) + " more lines: enlarge the window", Tone::warning)
             .text());
   } else if (lines.size() + 1 < room) {
     const Lines events = lines_of_events(state, style, room - lines.size() - 1);

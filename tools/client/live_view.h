@@ -20,16 +20,16 @@ struct LiveState {
                                               ///< channel
   std::deque<nlohmann::ordered_json> events;  ///< the latest events of the daemon, the newest event last
   std::string question;                       ///< the question that waits for a key; empty if there is none
-  Span said;                                  ///< message about the last key; empty before the first key
+  Span message;                               ///< message about the last key; empty before the first key
 };
 
 /// Largest number of events that are kept for the screen.
 inline constexpr std::size_t events_shown = 50;
 
 /// Stores a status and updates the trends.
-void take_status(LiveState& state, nlohmann::ordered_json status);
+void update_status(LiveState& state, nlohmann::ordered_json status);
 /// Stores an event. Drops the oldest event if there are more than `events_shown`.
-void take_event(LiveState& state, nlohmann::ordered_json event);
+void add_event(LiveState& state, nlohmann::ordered_json event);
 
 /// Returns the screen as at most `rows` (> 0) lines. The last line is always the key help. If there are too
 /// few rows, events are omitted first, and a line of the screen states this.

@@ -37,8 +37,8 @@ std::string new_start_id() {
   return id;
 }
 
-std::optional<ClientFailure> cannot_name_starts(DaemonClient& client) {
-  const auto hello = client.ask({{"command", "hello"}});
+std::optional<ClientFailure> check_start_id_support(DaemonClient& client) {
+  const auto hello = client.call({{"command", "hello"}});
   if (!hello) return hello.error();
   const Json names = hello->value("capabilities", Json::array());
   if (std::find(names.begin(), names.end(), Json(capability)) != names.end()) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<ClientFailure> cannot_name_starts(DaemonClient& client) {
       "was started. Restart the daemon (systemctl restart softgripd)"};
 }
 
-Json stop_of(const std::string& start_id) {
+Json stop_request_for(const std::string& start_id) {
   return {{"command", "stop"}, {"start_id", start_id}};
 }
 

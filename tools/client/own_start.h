@@ -16,13 +16,13 @@ namespace softgrip::tools {
 
 /// Checks that the daemon supports `start_id`, so that a program can stop its own start alone. Returns
 /// nullopt if the daemon supports it, otherwise the reason why the program must not request a start.
-[[nodiscard]] std::optional<ClientFailure> cannot_name_starts(DaemonClient& client);
+[[nodiscard]] std::optional<ClientFailure> check_start_id_support(DaemonClient& client);
 
 /// Returns the request to stop the start with this id and no other start.
-[[nodiscard]] nlohmann::ordered_json stop_of(const std::string& start_id);
+[[nodiscard]] nlohmann::ordered_json stop_request_for(const std::string& start_id);
 
-/// Returns true if the daemon's reply to the request of stop_of() confirms that the start does not run and
-/// will not begin.
+/// Returns true if the daemon's reply to the request of stop_request_for() confirms that the start does not
+/// run and will not begin.
 [[nodiscard]] bool confirms_stop(const nlohmann::ordered_json& reply);
 
 /// Returns true if this reply of the daemon refuses the start. Returns false if the reply states that the

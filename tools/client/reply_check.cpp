@@ -20,7 +20,7 @@ namespace reply_shape {
 
 /// Largest accepted nesting depth of a line. Messages of the daemon need five levels. The depth is limited
 /// because copying and printing JSON recursively use the stack for each level.
-constexpr std::size_t deepest = 32;
+constexpr std::size_t max_depth = 32;
 
 /// The JSON types of a value as bits of a mask. A field may allow several types.
 enum Kind : unsigned { text = 1, number = 2, count = 4, flag = 8, object = 16, list = 32, null = 64 };
@@ -99,7 +99,7 @@ constexpr Field status_fields[] = {{"version", text},
 constexpr Shape status{status_fields};
 /// Shape of a result that is a status for some requests and another object for others, so no field is
 /// required.
-constexpr Shape perhaps_status{status_fields, false};
+constexpr Shape partial_status{status_fields, false};
 
 constexpr Field parameter_fields[] = {{"name", text},    {"unit", text},      {"lower", number},
                                       {"upper", number}, {"default", number}, {"about", text}};
@@ -121,14 +121,14 @@ constexpr Field reply_fields[] = {{"id", count | null},
                                   {"result", object, &result},
                                   {"error", object, &error}};
 constexpr Shape reply{reply_fields};
-constexpr Field accepted_fields[] = {{"result", object, &perhaps_status, true}};
+constexpr Field accepted_fields[] = {{"result", object, &partial_status, true}};
 constexpr Shape accepted{accepted_fields};
-constexpr Field declined_fields[] = {{"error", object, &error, true}};
-constexpr Shape declined{declined_fields};
+constexpr Field error_reply_fields[] = {{"error", object, &error, true}};
+constexpr Shape error_reply{error_reply_fields};
 constexpr Field watch_fields[] = {{"watch", object, &status, true}};
 constexpr Shape watch_line{watch_fields};
-constexpr Field news_fields[] = {{"event", object, &event, true}};
-constexpr Shape event_line{news_fields};
+constexpr Field event_line_fields[] = {{"event", object, &event, true}};
+constexpr Shape event_line{event_line_fields};
 
 unsigned kinds_of(const Json& value) {
   if (value.is_string()) return text;
@@ -172,7 +172,7 @@ Fault fault_of_line(const Json& line) {
   if (line.contains("watch")) return fault_of(line, watch_line, "");
   if (line.contains("event")) return fault_of(line, event_line, "");
   if (Fault wrong = fault_of(line, reply, "")) return wrong;
-  return fault_of(line, line["ok"].get<bool>() ? accepted : declined, "");
+  return fault_of(line, line["ok"].get<bool>() ? accepted : error_reply, "");
 }
 
 bool nests_too_deep(std::string_view line) {
@@ -187,7 +187,7 @@ bool nests_too_deep(std::string_view line) {
     if (in_text) continue;
     if (byte == '[' || byte == '{') ++depth;
     if ((byte == ']' || byte == '}') && depth > 0) --depth;
-    if (depth > deepest) return true;
+    if (depth > max_depth) return true;
   }
   return false;
 }
@@ -198,7 +198,7 @@ bool nests_too_deep(std::string_view line) {
 tl::expected<Json, std::string> parse_reply(std::string_view line) {
   // The nesting depth is checked before parsing, because copying and printing JSON use stack for each level.
   if (reply_shape::nests_too_deep(line)) {
-    return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::deepest) + " levels");
+    return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::max_depth) + " levels");
   }
   Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) return tl::unexpected<std::string>("a line is not JSON in UTF-8");

@@ -51,7 +51,7 @@ std::vector<std::string> view_of_sequences(const Json& sequences) {
     lines.push_back(text_of(sequence, "name") + (about.empty() ? "" : ": " + about));
     add_parameters(sequence.value("parameters", Json::array()), lines);
     const Json problems = sequence.value("problems", Json::array());
-    if (!problems.empty()) lines.push_back("  cannot be started:" + listed(problems));
+    if (!problems.empty()) lines.push_back("  cannot be started:" + problem_list(problems));
   }
   return lines;
 }

@@ -21,7 +21,7 @@ Tone tone_of_state(const std::string& state) {
   if (state == "running") return Tone::good;
   if (state == "faulted") return Tone::bad;
   if (state == "idle") return Tone::plain;
-  return Tone::doubtful;
+  return Tone::warning;
 }
 
 Tone tone_of_result(const std::string& result) {
@@ -64,11 +64,11 @@ void add_bar(Line& line, const Bar& bar, std::size_t cells) {
 
 constexpr std::size_t label_columns = 16;
 constexpr std::size_t numbers_columns = 46;
-constexpr std::size_t shortest_bar = 10;
-/// Column in which a trend begins, to the right of the numbers. If the screen has fewer than columns_beside
-/// columns, the trend is not placed there.
+constexpr std::size_t min_bar_cells = 10;
+/// Column in which a trend begins, to the right of the numbers. If the screen has fewer than
+/// min_trend_columns columns, the trend is not placed there.
 constexpr std::size_t trend_column = 56;
-constexpr std::size_t columns_beside = 72;
+constexpr std::size_t min_trend_columns = 72;
 
 /// Adds "  pressure       [######|   ]  32.10 kPa, command 32.40". If the line is too long, the numbers are
 /// on a second line.
@@ -77,28 +77,27 @@ void add_bar_lines(std::vector<std::string>& lines, const ViewStyle& style, std:
   Line line(style);
   line.add("  ").add(label).to_column(label_columns);
   const std::size_t wide = style.columns - std::min(style.columns, label_columns + numbers_columns);
-  const bool fits = label_columns + std::max(shortest_bar, wide) + 4 + numbers.size() <= style.columns;
+  const bool fits = label_columns + std::max(min_bar_cells, wide) + 4 + numbers.size() <= style.columns;
   const std::size_t alone = style.columns - std::min(style.columns, label_columns + 2);
-  add_bar(line, bar, fits ? std::max(shortest_bar, wide) : std::max(shortest_bar, alone));
+  add_bar(line, bar, fits ? std::max(min_bar_cells, wide) : std::max(min_bar_cells, alone));
   if (fits) line.add("  ").add(numbers);
   lines.push_back(line.text());
   if (!fits) lines.push_back(Line(style).to_column(label_columns).add(numbers).text());
 }
 
-void add_glyphs(Line& line, const Trend& trend, std::size_t cells, double least_span) {
-  for (const std::string& glyph : trend.glyphs(cells, least_span, line.style().unicode))
-    line.add_glyph(glyph);
+void add_glyphs(Line& line, const Trend& trend, std::size_t cells, double min_span) {
+  for (const std::string& glyph : trend.glyphs(cells, min_span, line.style().unicode)) line.add_glyph(glyph);
 }
 
 /// Adds "  pressure      32.10 kPa, command 32.40         ▁▂▃▅▇". The trend is omitted if the screen is too
 /// narrow.
 void add_trend_line(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
-                    const std::string& numbers, const Trend& trend, double least_span) {
+                    const std::string& numbers, const Trend& trend, double min_span) {
   Line line(style);
   line.add("  ").add(label).to_column(label_columns).add(numbers);
-  if (style.columns >= columns_beside) {
+  if (style.columns >= min_trend_columns) {
     line.add(" ").to_column(trend_column);
-    add_glyphs(line, trend, style.columns - std::min(style.columns, line.columns()), least_span);
+    add_glyphs(line, trend, style.columns - std::min(style.columns, line.columns()), min_span);
   }
   lines.push_back(line.text());
 }
@@ -123,7 +122,7 @@ void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewS
   const std::string words = text_at(channel, "limit_text");
   if (words == "-") return;
   const std::string text = std::string(label_columns, ' ') + words;
-  for (const std::string& line : broken(style, text, Tone::doubtful, label_columns)) lines.push_back(line);
+  for (const std::string& line : wrap_text(style, text, Tone::warning, label_columns)) lines.push_back(line);
 }
 
 void add_channel_head(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
@@ -141,14 +140,14 @@ void add_channel_head(std::vector<std::string>& lines, const Json& channel, cons
                           {by, Tone::plain},
                           {"  reading " + reading, validity == "valid" ? Tone::plain : Tone::bad},
                           {"  model " + health, health == "unfit" ? Tone::bad : Tone::plain}};
-  if (channel.value("saturated", false)) spans.push_back({"  saturated", Tone::doubtful});
-  if (channel.value("slewing", false)) spans.push_back({"  slewing", Tone::doubtful});
-  for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
+  if (channel.value("saturated", false)) spans.push_back({"  saturated", Tone::warning});
+  if (channel.value("slewing", false)) spans.push_back({"  slewing", Tone::warning});
+  for (const std::string& line : wrap_spans(style, spans, label_columns)) lines.push_back(line);
 }
 
 /// Smallest span of the scale of a trend, as a share of the channel's permitted range. It prevents that noise
 /// looks like motion.
-constexpr double least_share = 0.1;
+constexpr double min_span_share = 0.1;
 
 void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style,
                  const ChannelTrends* trends) {
@@ -161,10 +160,10 @@ void add_channel(std::vector<std::string>& lines, const Json& channel, const Vie
                       command};
   std::string numbers = with_decimals(pressure, 2) + " kPa, command " + with_decimals(command, 2);
   if (const auto squeeze = number_at(channel, "squeeze_kpa")) numbers += ", squeeze " + fixed(*squeeze, 1);
-  const auto least_span = [](const Bar& bar) { return least_share * (bar.upper - bar.lower); };
+  const auto min_span = [](const Bar& bar) { return min_span_share * (bar.upper - bar.lower); };
   const auto add = [&](std::string_view label, const Bar& bar, const Trend* trend) {
     if (trend == nullptr) return add_bar_lines(lines, style, label, bar, numbers);
-    add_trend_line(lines, style, label, numbers, *trend, least_span(bar));
+    add_trend_line(lines, style, label, numbers, *trend, min_span(bar));
   };
   add("pressure", pressures, trends != nullptr ? &trends->pressure_kpa : nullptr);
   add_limit(lines, channel, style);
@@ -177,8 +176,8 @@ void add_channel(std::vector<std::string>& lines, const Json& channel, const Vie
   if (const auto temperature = number_at(channel, "temperature_c"))
     numbers += ", " + fixed(*temperature, 1) + " C";
   add("displacement", displacements, trends != nullptr ? &trends->displacement_mm : nullptr);
-  if (trends != nullptr && style.columns < columns_beside) {
-    add_trends_below(lines, style, *trends, least_span(pressures), least_span(displacements));
+  if (trends != nullptr && style.columns < min_trend_columns) {
+    add_trends_below(lines, style, *trends, min_span(pressures), min_span(displacements));
   }
 }
 
@@ -200,7 +199,7 @@ void add_head(std::vector<std::string>& lines, const Json& status, const ViewSty
     }
   }
   spans.push_back({"  " + with_decimals(number_at(status, "time_s"), 1) + " s", Tone::faint});
-  for (const std::string& line : flowed(style, spans, 2)) lines.push_back(line);
+  for (const std::string& line : wrap_spans(style, spans, 2)) lines.push_back(line);
 }
 
 /// Returns a title such as "F202 of left".
@@ -213,14 +212,14 @@ void add_fault(std::vector<std::string>& lines, const Json& status, const ViewSt
   const Json& fault = object_at(status, "fault");
   if (fault.empty()) return;
   const auto add = [&](const std::string& text, Tone tone) {
-    for (const std::string& line : broken(style, text, tone, 2)) lines.push_back(line);
+    for (const std::string& line : wrap_text(style, text, tone, 2)) lines.push_back(line);
   };
   add("fault " + fault_title(fault) + "  " + text_at(fault, "name") + ": " + text_at(fault, "meaning"),
       Tone::bad);
   add("  usual cause: " + text_at(fault, "cause"), Tone::plain);
   add("  remedy: " + text_at(fault, "remedy"), Tone::plain);
   if (const std::string next = text_at(fault, "next"); next != "-") {
-    add("  " + next, object_at(fault, "present").empty() ? Tone::good : Tone::doubtful);
+    add("  " + next, object_at(fault, "present").empty() ? Tone::good : Tone::warning);
   }
 }
 
@@ -228,11 +227,11 @@ void add_fault(std::vector<std::string>& lines, const Json& status, const ViewSt
 void add_pressure(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const std::string text = text_at(object_at(status, "under_pressure"), "text");
   if (text == "-") return;
-  for (const std::string& line : broken(style, text, Tone::bad, 0)) lines.push_back(line);
+  for (const std::string& line : wrap_text(style, text, Tone::bad, 0)) lines.push_back(line);
 }
 
 /// If the board does not respond, adds the number of connection attempts and the last failure.
-void add_silence(std::vector<std::string>& lines, const Json& bus, const ViewStyle& style) {
+void add_no_response(std::vector<std::string>& lines, const Json& bus, const ViewStyle& style) {
   const auto attempts = number_at(bus, "attempts");
   const auto retry_s = number_at(bus, "retry_s");
   const bool answered = bus.value("answered", false);
@@ -244,14 +243,14 @@ void add_silence(std::vector<std::string>& lines, const Json& bus, const ViewSty
   }
   text += ".";
   if (const std::string failure = text_at(bus, "failure"); failure != "-") text += " " + failure;
-  for (const std::string& line : broken(style, text, Tone::bad, label_columns)) lines.push_back(line);
+  for (const std::string& line : wrap_text(style, text, Tone::bad, label_columns)) lines.push_back(line);
 }
 
 void add_labelled(std::vector<std::string>& lines, const ViewStyle& style, std::string label,
                   std::vector<Span> spans) {
   label.resize(label_columns, ' ');
   spans.insert(spans.begin(), Span{label, Tone::plain});
-  for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
+  for (const std::string& line : wrap_spans(style, spans, label_columns)) lines.push_back(line);
 }
 
 void add_board(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
@@ -260,20 +259,20 @@ void add_board(std::vector<std::string>& lines, const Json& status, const ViewSt
   add_labelled(lines, style, "board",
                {{text_at(bus, "board"), Tone::plain},
                 {connected ? "  connected" : "  NOT CONNECTED", connected ? Tone::good : Tone::bad}});
-  if (!connected) add_silence(lines, bus, style);
+  if (!connected) add_no_response(lines, bus, style);
 }
 
-void add_machinery(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
+void add_internals(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const Json& loop = object_at(status, "loop");
   const auto overruns = number_at(loop, "slips");
   std::vector<Span> timing{
       {with_decimals(number_at(status, "rate_hz"), 0) + " Hz, ", Tone::plain},
       {with_decimals(number_at(loop, "ticks"), 0) + " ticks, ", Tone::plain},
-      {with_decimals(overruns, 0) + " overruns, ", overruns.value_or(0) > 0 ? Tone::doubtful : Tone::plain},
+      {with_decimals(overruns, 0) + " overruns, ", overruns.value_or(0) > 0 ? Tone::warning : Tone::plain},
       {"wake-up p99 " + with_decimals(number_at(loop, "wake_up_p99_us"), 0) + " us, ", Tone::plain},
       {"max " + with_decimals(number_at(loop, "wake_up_max_us"), 0) + " us", Tone::plain}};
   if (object_at(status, "real_time").value("degraded", false))
-    timing.push_back({"  real time degraded", Tone::doubtful});
+    timing.push_back({"  real time degraded", Tone::warning});
   add_labelled(lines, style, "loop", timing);
 
   const Json& recording = object_at(status, "recording");
@@ -300,7 +299,7 @@ StatusParts parts_of(const Json& status, const ViewStyle& style, const std::vect
     }
   }
   add_board(parts.board, status, style);
-  add_machinery(parts.machinery, status, style);
+  add_internals(parts.internals, status, style);
   return parts;
 }
 
@@ -313,7 +312,7 @@ std::vector<std::string> view_of(const Json& status, const ViewStyle& style) {
   }
   lines.emplace_back();
   lines.insert(lines.end(), parts.board.begin(), parts.board.end());
-  lines.insert(lines.end(), parts.machinery.begin(), parts.machinery.end());
+  lines.insert(lines.end(), parts.internals.begin(), parts.internals.end());
   return lines;
 }
 

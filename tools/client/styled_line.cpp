@@ -11,7 +11,7 @@ const char* escape_of(Tone tone) {
       return "\x1b[1m";
     case Tone::good:
       return "\x1b[32m";
-    case Tone::doubtful:
+    case Tone::warning:
       return "\x1b[33m";
     case Tone::bad:
       return "\x1b[1;31m";
@@ -66,7 +66,8 @@ std::string Line::text() const {
   return result;
 }
 
-std::vector<std::string> flowed(const ViewStyle& style, const std::vector<Span>& spans, std::size_t indent) {
+std::vector<std::string> wrap_spans(const ViewStyle& style, const std::vector<Span>& spans,
+                                    std::size_t indent) {
   std::vector<std::string> lines;
   Line line(style);
   std::size_t begins = 0;
@@ -85,8 +86,8 @@ std::vector<std::string> flowed(const ViewStyle& style, const std::vector<Span>&
   return lines;
 }
 
-std::vector<std::string> broken(const ViewStyle& style, std::string_view text, Tone tone,
-                                std::size_t indent) {
+std::vector<std::string> wrap_text(const ViewStyle& style, std::string_view text, Tone tone,
+                                   std::size_t indent) {
   std::vector<std::string> lines;
   std::size_t begins = 0;
   do {

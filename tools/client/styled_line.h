@@ -15,7 +15,7 @@ struct ViewStyle {
   bool unicode = false;      ///< true: bars and trends may use block characters
 };
 
-enum class Tone : unsigned char { plain, strong, good, doubtful, bad, faint };
+enum class Tone : unsigned char { plain, strong, good, warning, bad, faint };
 
 /// A text with one tone, for example plain, strong or bad.
 struct Span {
@@ -55,12 +55,12 @@ class Line {
 
 /// Arranges spans one after the other. A span that does not fit on the present line begins a new line,
 /// indented by `indent` blanks. Blanks at the beginning of a line are omitted.
-[[nodiscard]] std::vector<std::string> flowed(const ViewStyle& style, const std::vector<Span>& spans,
-                                              std::size_t indent);
+[[nodiscard]] std::vector<std::string> wrap_spans(const ViewStyle& style, const std::vector<Span>& spans,
+                                                  std::size_t indent);
 
 /// Splits ASCII text at its line breaks. A line that is too long is also split at a blank. All lines after
 /// the first are indented by `indent` blanks.
-[[nodiscard]] std::vector<std::string> broken(const ViewStyle& style, std::string_view text, Tone tone,
-                                              std::size_t indent);
+[[nodiscard]] std::vector<std::string> wrap_text(const ViewStyle& style, std::string_view text, Tone tone,
+                                                 std::size_t indent);
 
 }  // namespace softgrip::tools

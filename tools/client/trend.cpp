@@ -27,7 +27,7 @@ void Trend::add(double time_s, std::optional<double> value) {
   if (value) values_.back() = value;
 }
 
-std::vector<std::string> Trend::glyphs(std::size_t cells, double least_span, bool unicode) const {
+std::vector<std::string> Trend::glyphs(std::size_t cells, double min_span, bool unicode) const {
   const std::size_t shown = std::min(cells, values_.size());
   const auto begin = values_.end() - static_cast<std::ptrdiff_t>(shown);
   double lowest = std::numeric_limits<double>::infinity();
@@ -36,7 +36,7 @@ std::vector<std::string> Trend::glyphs(std::size_t cells, double least_span, boo
     lowest = std::min(lowest, value->value_or(lowest));
     highest = std::max(highest, value->value_or(highest));
   }
-  const double span = std::max(highest - lowest, least_span);
+  const double span = std::max(highest - lowest, min_span);
   const auto& levels = unicode ? blocks : ascii;
   std::vector<std::string> glyphs;
   for (auto value = begin; value != values_.end(); ++value) {

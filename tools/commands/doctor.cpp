@@ -46,8 +46,8 @@ bool is_simulated(const rig::RigFile& rig) {
 /// daemon. Disk and clock are not checked. Returns the daemon's status, or null if the daemon does not
 /// respond.
 Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
-  const auto status = client.ask({{"command", "status"}});
-  const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
+  const auto status = client.call({{"command", "status"}});
+  const auto statistics = status ? client.call({{"command", "statistics"}}) : status;
   if (!status || !statistics) {
     const ClientFailure& failure = !status ? status.error() : statistics.error();
     findings.fail("daemon", failure.message,
@@ -124,7 +124,7 @@ ExitCode ask_for_a_name(const std::string& socket) {
 ExitCode run_unnamed(const DoctorOptions& options) {
   const std::string socket = options.socket.empty() ? default_socket_path() : options.socket;
   auto client = DaemonClient::connect(socket);
-  if (!client && client.error().nobody_listens) return ask_for_a_name(socket);
+  if (!client && client.error().no_listener) return ask_for_a_name(socket);
   if (!client) return fail(client.error().code, client.error().message);
   if (options.move) return fail(ExitCode::state_refused, daemon_holds_the_board);
   doctor::Findings findings;
@@ -156,7 +156,7 @@ ExitCode run(const DoctorOptions& options) {
 
   doctor::Findings findings;
   auto client = DaemonClient::connect(options.socket.empty() ? rig->socket.path : options.socket);
-  const bool runs = client.has_value() || !client.error().nobody_listens;
+  const bool runs = client.has_value() || !client.error().no_listener;
   if (runs && options.move) {
     return fail(ExitCode::state_refused, daemon_holds_the_board);
   }

@@ -50,7 +50,7 @@ ExitCode run(const EventsOptions& chosen) {
   if (!client) return fail(client.error().code, client.error().message);
   while (true) {
     std::uint64_t newest = 0;
-    const auto events = events_of(*client, options.query, newest);
+    const auto events = query_events(*client, options.query, newest);
     if (!events) return fail(events.error().code, events.error().message);
     for (const Json& event : *events) print(event, options.daemon.json);
     if (!options.follow) return ExitCode::done;

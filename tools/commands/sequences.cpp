@@ -19,7 +19,7 @@ struct SequencesOptions {
 };
 
 ExitCode run(const SequencesOptions& options) {
-  const auto result = ask_daemon(options.daemon, {{"command", "sequences"}});
+  const auto result = call_daemon(options.daemon, {{"command", "sequences"}});
   if (!result) return result.error();
   if (options.daemon.json) {
     print_json(*result);

@@ -37,7 +37,7 @@ struct StartOptions {
 
 /// Returns the id of the daemon's latest event, so that the program shows only the events after it.
 tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
-  const auto result = client.ask({{"command", "events"}, {"since", 0}, {"limit", 1}});
+  const auto result = client.call({{"command", "events"}, {"since", 0}, {"limit", 1}});
   if (!result) return tl::unexpected{result.error()};
   return result->value("newest", std::uint64_t{0});
 }
@@ -128,7 +128,7 @@ tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::
   pipe_ends_ = std::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
   while (true) {
     const auto line = reply(client_, {{"command", "events"}, {"since", since}, {"limit", 1000}},
-                            DaemonClient::longest_answer);
+                            DaemonClient::reply_timeout);
     if (!line) return tl::unexpected{line.error()};
     const auto result = DaemonClient::result_of(*line);
     if (!result) return tl::unexpected{Break{0, result.error()}};
@@ -149,7 +149,7 @@ tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::
 bool FollowedStart::stop_confirmed() {
   auto client = DaemonClient::connect(options_.daemon.socket);
   if (!client) return false;
-  const auto line = reply(*client, stop_of(id_), DaemonClient::longest_answer);
+  const auto line = reply(*client, stop_request_for(id_), DaemonClient::reply_timeout);
   return line && confirms_stop(*line);
 }
 
@@ -173,7 +173,7 @@ ExitCode FollowedStart::run(Json request, std::uint64_t newest_event) {
   if (!accepted->contains("request"))
     return take_back({0, {ExitCode::io, "softgripd sent a malformed reply: `result.request` is missing"}});
   if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
-    std::fprintf(stderr, "softgrip: warning:%s\n", listed(warnings).c_str());
+    std::fprintf(stderr, "softgrip: warning:%s\n", problem_list(warnings).c_str());
   if (options_.wait) {
     const auto end = follow(accepted->value("request", std::uint64_t{0}), newest_event);
     return end ? *end : take_back(end.error());
@@ -200,7 +200,7 @@ ExitCode run(const StartOptions& options) {
   }
   auto client = DaemonClient::connect(options.daemon.socket);
   if (!client) return fail(client.error().code, client.error().message);
-  if (const auto failure = cannot_name_starts(*client)) return fail(failure->code, failure->message);
+  if (const auto failure = check_start_id_support(*client)) return fail(failure->code, failure->message);
   const auto newest = newest_event(*client);
   if (!newest) return fail(newest.error().code, newest.error().message);
   return FollowedStart(options, *client).run(std::move(request), *newest);

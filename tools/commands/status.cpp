@@ -29,7 +29,7 @@ nlohmann::ordered_json health_of(const nlohmann::ordered_json& status) {
 }
 
 ExitCode run(const DaemonOptions& options) {
-  auto status = ask_daemon(options, {{"command", "status"}});
+  auto status = call_daemon(options, {{"command", "status"}});
   if (!status) return status.error();
   if (options.json) {
     const nlohmann::ordered_json health = health_of(*status);

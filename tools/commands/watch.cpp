@@ -165,7 +165,7 @@ void LiveWatch::take_events(const Json& result) {
   }
   for (const Json& event : result.value("events", Json::array())) {
     newest_event_ = event.value("id", newest_event_);
-    take_event(state_, event);
+    add_event(state_, event);
   }
   if (newest_event_ < newest) events_due_s_ = 0;
 }
@@ -177,14 +177,14 @@ void LiveWatch::take_answer(const Json& request, const Json& line) {
     if (result) take_events(*result);
     return;
   }
-  state_.said = result ? Span{done_of(request, *result), Tone::good}
-                       : Span{shown_lines(result.error().message), Tone::bad};
+  state_.message = result ? Span{done_of(request, *result), Tone::good}
+                          : Span{escape_control_characters(result.error().message), Tone::bad};
   events_due_s_ = 0;
 }
 
 void LiveWatch::take_line(const Json& line) {
   if (line.contains("watch")) {
-    take_status(state_, line["watch"]);
+    update_status(state_, line["watch"]);
     ++updates_;
     return;
   }
@@ -225,11 +225,11 @@ bool LiveWatch::hear_keys() {
     return true;
   }
   const std::string_view keys(typed.data(), static_cast<std::size_t>(count));
-  KeyDialogue::Outcome outcome = dialogue_.take(keys, now_s(), ran());
-  if (outcome.leave) return false;
-  state_.said = {};
+  KeyDialogue::Outcome outcome = dialogue_.process(keys, now_s(), ran());
+  if (outcome.quit) return false;
+  state_.message = {};
   if (outcome.request) {
-    state_.said = {outcome.request->value("command", "") + " requested", Tone::faint};
+    state_.message = {outcome.request->value("command", "") + " requested", Tone::faint};
     ask(std::move(*outcome.request));
   }
   return true;
@@ -276,7 +276,7 @@ ExitCode LiveWatch::run(std::uint64_t count) {
         return fail(failure->code, failure->message);
       }
     }
-    if (dialogue_.lapse(now_s())) state_.said = {"no confirmation: no command was sent", Tone::doubtful};
+    if (dialogue_.expire(now_s())) state_.message = {"no confirmation: no command was sent", Tone::warning};
     draw();
   }
   leave();
@@ -286,7 +286,7 @@ ExitCode LiveWatch::run(std::uint64_t count) {
 ExitCode run(const WatchOptions& options) {
   auto client = DaemonClient::connect(options.daemon.socket);
   if (!client) return fail(client.error().code, client.error().message);
-  const auto accepted = client->ask({{"command", "watch"}, {"rate_hz", options.rate_hz}});
+  const auto accepted = client->call({{"command", "watch"}, {"rate_hz", options.rate_hz}});
   if (!accepted) return fail(accepted.error().code, accepted.error().message);
   if (on_terminal() && !options.daemon.json) return LiveWatch(*client).run(options.count);
   return print_updates(*client, options);

@@ -48,7 +48,7 @@ void Server::run() {
     const Nanoseconds now = clock_.now();
     if (daemon_.connect(now)) gateway_.on_daemon_connected(now);
     const auto take = [&](const nlohmann::ordered_json& line) { gateway_.on_daemon_line(line, now); };
-    if (daemon_ && !daemon_.hear(take)) gateway_.on_daemon_disconnected();
+    if (daemon_ && !daemon_.receive_lines(take)) gateway_.on_daemon_disconnected();
     gateway_.update(now);
     for (Session& session : sessions_) {
       if (!serve(session, polled[session.poll_entry], now)) gateway_.connections().remove(session.id);

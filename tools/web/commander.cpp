@@ -134,7 +134,8 @@ void Commander::abandon_all() {
 }
 
 void Commander::update(Nanoseconds now) {
-  if (daemon_ && !daemon_.hear([&](Json& line) { process_line(std::move(line)); })) handle_disconnect();
+  if (daemon_ && !daemon_.receive_lines([&](Json& line) { process_line(std::move(line)); }))
+    handle_disconnect();
   retry_stops(now);
 }
 
@@ -167,7 +168,7 @@ void Commander::abandon_start(PendingCommand& pending) {
 }
 
 void Commander::stop(AbandonedStart& start) {
-  start.stop = send_numbered(tools::stop_of(start.start_id));
+  start.stop = send_numbered(tools::stop_request_for(start.start_id));
 }
 
 /// Requests to stop two kinds of starts: those that were abandoned while there was no connection, and those

@@ -25,8 +25,8 @@ enum RequestId : std::uint64_t { hello = 1, watch, subscribe, statistics, sequen
 
 void DaemonWatch::update(Nanoseconds now) {
   if (daemon_.connect(now)) send_initial_requests(now);
-  const bool connected = daemon_.hear([&](Json& line) { process_line(std::move(line), now); });
-  if (connected && now - last_status_at_ > status_timeout) daemon_.end();
+  const bool connected = daemon_.receive_lines([&](Json& line) { process_line(std::move(line), now); });
+  if (connected && now - last_status_at_ > status_timeout) daemon_.disconnect();
   if (daemon_) {
     send_due_requests(now);
   } else {

@@ -68,7 +68,7 @@ tl::expected<Json, ClientFailure> answer_to(const std::string& reply) {
   const ScriptedDaemon daemon(reply);
   auto client = DaemonClient::connect(daemon.path());
   EXPECT_TRUE(client);
-  return client->ask({{"command", "status"}});
+  return client->call({{"command", "status"}});
 }
 
 TEST(DaemonClient, ReturnsTheResultOfASuccessfulReply) {
@@ -92,7 +92,7 @@ class HangingDaemon : public ::testing::Test {
 };
 
 TEST_F(HangingDaemon, DoesNotBlockAClientThatSendsRequests) {
-  auto client = DaemonClient::connect_at_once(path_);
+  auto client = DaemonClient::connect_without_waiting(path_);
   ASSERT_TRUE(client);
   const Json request{{"command", std::string(10'000, 'x')}};
   tl::expected<std::optional<Json>, ClientFailure> line = std::optional<Json>{};
@@ -132,13 +132,13 @@ TEST(DaemonClient, ConnectAtOnceFailsIfTheConnectionQueueIsFull) {
   const auto listener = net::listen_unix(path);
   ASSERT_TRUE(listener);
   std::vector<DaemonClient> waiting;
-  auto client = DaemonClient::connect_at_once(path);
-  for (; client && waiting.size() < 10'000; client = DaemonClient::connect_at_once(path))
+  auto client = DaemonClient::connect_without_waiting(path);
+  for (; client && waiting.size() < 10'000; client = DaemonClient::connect_without_waiting(path))
     waiting.push_back(std::move(*client));
   ASSERT_FALSE(client);
   EXPECT_EQ(client.error().code, ExitCode::io);
   EXPECT_NE(client.error().message.find("accepts no connection"), std::string::npos);
-  EXPECT_FALSE(client.error().nobody_listens);
+  EXPECT_FALSE(client.error().no_listener);
   std::filesystem::remove_all(folder);
 }
 
@@ -184,17 +184,17 @@ TEST(DaemonLink, PassesAllLinesReceivedBeforeTheConnectionEnds) {
   EXPECT_FALSE(link.connect(ns_per_s)) << "the link is connected";
   EXPECT_GE(link.descriptor(), 0);
   std::vector<Json> heard;
-  const auto take = [&heard](Json& line) { heard.push_back(std::move(line)); };
-  EXPECT_TRUE(link.hear(take));
+  const auto on_line = [&heard](Json& line) { heard.push_back(std::move(line)); };
+  EXPECT_TRUE(link.receive_lines(on_line));
   Descriptor client = net::accept_client(daemon.listener);
   ASSERT_TRUE(client);
   const std::string lines = "{\"event\": {\"id\": 1}}\n{\"event\": {\"id\": 2}}\n";
   ASSERT_EQ(::send(client.get(), lines.data(), lines.size(), 0), static_cast<ssize_t>(lines.size()));
-  EXPECT_TRUE(link.hear(take));
+  EXPECT_TRUE(link.receive_lines(on_line));
   EXPECT_EQ(heard.size(), 2U);
   ASSERT_EQ(::send(client.get(), lines.data(), lines.size(), 0), static_cast<ssize_t>(lines.size()));
   client.reset();
-  EXPECT_FALSE(link.hear(take));
+  EXPECT_FALSE(link.receive_lines(on_line));
   EXPECT_EQ(heard.size(), 4U) << "lines before the end are passed";
   EXPECT_FALSE(link);
   EXPECT_EQ(link.descriptor(), -1);
@@ -208,9 +208,9 @@ TEST(DaemonLink, WaitsAQuarterSecondBetweenConnectionAttempts) {
   EXPECT_FALSE(link.connect(ns_per_s));
   daemon.listener = std::move(*net::listen_unix(daemon.path));
   EXPECT_FALSE(link.connect(ns_per_s + ns_per_s / 4 - 1)) << "250 ms have not passed";
-  EXPECT_FALSE(link.hear([](Json&) {}));
+  EXPECT_FALSE(link.receive_lines([](Json&) {}));
   EXPECT_TRUE(link.connect(ns_per_s + ns_per_s / 4));
-  link.end();
+  link.disconnect();
   EXPECT_FALSE(link);
   EXPECT_FALSE(link.connect_now()) << "connects without a pause";
   EXPECT_TRUE(link);

@@ -43,12 +43,12 @@ TEST_F(EventQueryTest, SinceAcceptsAnEventIdADurationOrATime) {
 
 TEST_F(EventQueryTest, SelectsEventsByIdSeverityAndTime) {
   const Json event{{"id", 7}, {"severity", "warning"}, {"at", "2025-11-20T03:46:12.000Z"}};
-  EXPECT_TRUE(wanted({}, event));
-  EXPECT_TRUE(wanted({{6, ""}, "warning", 1}, event));
-  EXPECT_FALSE(wanted({{7, ""}, "information", 1}, event));
-  EXPECT_FALSE(wanted({{0, ""}, "error", 1}, event));
-  EXPECT_TRUE(wanted({{0, "2025-11-20T03:46:12.000Z"}, "information", 1}, event));
-  EXPECT_FALSE(wanted({{0, "2025-11-20T03:46:12.001Z"}, "information", 1}, event));
+  EXPECT_TRUE(matches({}, event));
+  EXPECT_TRUE(matches({{6, ""}, "warning", 1}, event));
+  EXPECT_FALSE(matches({{7, ""}, "information", 1}, event));
+  EXPECT_FALSE(matches({{0, ""}, "error", 1}, event));
+  EXPECT_TRUE(matches({{0, "2025-11-20T03:46:12.000Z"}, "information", 1}, event));
+  EXPECT_FALSE(matches({{0, "2025-11-20T03:46:12.001Z"}, "information", 1}, event));
 }
 
 TEST_F(EventQueryTest, AnEventLineShowsTheLocalTimeIfTheEventHasADate) {

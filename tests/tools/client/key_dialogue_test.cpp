@@ -8,13 +8,13 @@ namespace {
 /// Returns the request that a key causes. Returns "leave" if the key ends the dialogue, and "" if the key
 /// causes no request.
 std::string asked(const KeyDialogue::Outcome& outcome) {
-  if (outcome.leave) return "leave";
+  if (outcome.quit) return "leave";
   return outcome.request ? outcome.request->dump() : "";
 }
 
 class KeyDialogueTest : public ::testing::Test {
  protected:
-  std::string type(std::string_view keys) { return asked(dialogue_.take(keys, time_s_, ran_)); }
+  std::string type(std::string_view keys) { return asked(dialogue_.process(keys, time_s_, ran_)); }
 
   KeyDialogue dialogue_;
   double time_s_ = 100;
@@ -72,11 +72,11 @@ TEST_F(KeyDialogueTest, PastedTextDoesNotConfirmAQuestion) {
 
 TEST_F(KeyDialogueTest, AQuestionWithoutAnAnswerExpires) {
   type("r");
-  time_s_ += KeyDialogue::patience_s + 0.1;
+  time_s_ += KeyDialogue::confirmation_timeout_s + 0.1;
   EXPECT_EQ(type("y"), "");
   type("r");
-  EXPECT_FALSE(dialogue_.lapse(time_s_ + 1));
-  EXPECT_TRUE(dialogue_.lapse(time_s_ + 11));
+  EXPECT_FALSE(dialogue_.expire(time_s_ + 1));
+  EXPECT_TRUE(dialogue_.expire(time_s_ + 11));
   EXPECT_TRUE(dialogue_.question().empty());
 }
 

@@ -27,9 +27,9 @@ Json event(int id, const std::string& severity, const std::string& text) {
 
 LiveState state() {
   LiveState state;
-  for (int second = 0; second <= 30; ++second) take_status(state, status_at(second));
-  take_event(state, event(1, "information", "The state is now idle."));
-  take_event(state, event(2, "error", "left: Fault F202 reading_out_of_range: The signal was outside."));
+  for (int second = 0; second <= 30; ++second) update_status(state, status_at(second));
+  add_event(state, event(1, "information", "The state is now idle."));
+  add_event(state, event(2, "error", "left: Fault F202 reading_out_of_range: The signal was outside."));
   return state;
 }
 
@@ -61,7 +61,7 @@ TEST(LiveView, ASmallWindowStatesThatLinesAreHidden) {
 
 TEST(LiveView, AQuestionReplacesTheLastReplyAboveTheKeys) {
   LiveState asking = state();
-  asking.said = {"stopping", Tone::good};
+  asking.message = {"stopping", Tone::good};
   EXPECT_EQ(screen_of(asking, {80, false, false}, 24)[22], "stopping");
   asking.question = "Start pick_stone? The fingers will move. y: yes, any other key: no";
   EXPECT_EQ(screen_of(asking, {80, false, false}, 24)[22], asking.question);
@@ -75,17 +75,17 @@ TEST(LiveView, AnInvalidReadingLeavesAGapInTheDisplacementTrend) {
   Json blind = status_at(31);
   blind["channels"][0]["validity"] = "out_of_range";
   blind["channels"][0]["displacement_mm"] = 20;
-  take_status(live, blind);
+  update_status(live, blind);
   EXPECT_EQ(live.trends[0].displacement_mm.glyphs(1, 1, false).front(), " ");
   EXPECT_NE(live.trends[0].pressure_kpa.glyphs(1, 1, false).front(), " ");
 }
 
 TEST(LiveView, LimitsTheNumberOfEventsAndToleratesMalformedStatus) {
   LiveState live;
-  for (int i = 0; i < 1000; ++i) take_event(live, event(i, "warning", "x"));
+  for (int i = 0; i < 1000; ++i) add_event(live, event(i, "warning", "x"));
   EXPECT_EQ(live.events.size(), events_shown);
-  take_status(live, Json::parse(R"({"channels": 3, "time_s": "x"})"));
-  take_status(live, Json::parse(R"({"channels": [1, null]})"));
+  update_status(live, Json::parse(R"({"channels": 3, "time_s": "x"})"));
+  update_status(live, Json::parse(R"({"channels": [1, null]})"));
   EXPECT_FALSE(screen_of(live, {80, false, false}, 24).empty());
 }
 

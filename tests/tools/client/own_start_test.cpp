@@ -28,7 +28,7 @@ TEST(OwnStart, NoTwoStartsHaveTheSameId) {
 }
 
 TEST(OwnStart, AStopIsConfirmedBySuccessOrANotRunningRefusal) {
-  EXPECT_EQ(stop_of("a"), Json::parse(R"({"command":"stop","start_id":"a"})"));
+  EXPECT_EQ(stop_request_for("a"), Json::parse(R"({"command":"stop","start_id":"a"})"));
   EXPECT_TRUE(confirms_stop({{"id", 1}, {"ok", true}, {"result", {{"request", 0}}}}));
   EXPECT_TRUE(confirms_stop(refused("named_start_not_running")));
   EXPECT_FALSE(confirms_stop(refused("faulted")));

@@ -30,8 +30,8 @@ void read_event(const Json& event) {
   LiveState state;
   static_cast<void>(line_of_event(event));
   static_cast<void>(brief_line_of_event(event));
-  static_cast<void>(wanted({{}, "warning", 1}, event));
-  take_event(state, event);
+  static_cast<void>(matches({{}, "warning", 1}, event));
+  add_event(state, event);
   static_cast<void>(screen_of(state, style, 40));
   static_cast<void>(event.value("kind", "") + event.value("code", ""));
   static_cast<void>(event.value("request", std::uint64_t{0}));
@@ -39,7 +39,7 @@ void read_event(const Json& event) {
 
 void read_status(const Json& status) {
   LiveState state;
-  take_status(state, status);
+  update_status(state, status);
   static_cast<void>(screen_of(state, style, 40));
   static_cast<void>(view_of(status, style));
   static_cast<void>(line_of_status(status));
@@ -58,7 +58,7 @@ void read(const Json& line) {
   static_cast<void>(result->value("newest", std::uint64_t{0}));
   static_cast<void>(result->value("request", std::uint64_t{0}));
   static_cast<void>(sentence_of_acknowledged(*result));
-  static_cast<void>(listed(result->value("warnings", Json::array())));
+  static_cast<void>(problem_list(result->value("warnings", Json::array())));
   for (const Json& event : result->value("events", Json::array())) read_event(event);
   static_cast<void>(view_of_sequences(result->value("sequences", Json::array())));
   static_cast<void>(names_of_sequences(result->value("sequences", Json::array())));

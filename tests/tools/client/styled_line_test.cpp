@@ -24,18 +24,18 @@ TEST(StyledLine, EscapeSequencesAndGlyphBytesOccupyNoColumns) {
 
 TEST(StyledLine, SpansFlowAndDoNotBeginALineWithBlanks) {
   const ViewStyle style{12, false, false};
-  EXPECT_EQ(flowed(style, {{"abcdef"}, {"   ghi"}, {"   jkl"}}, 2), (Lines{"abcdef   ghi", "  jkl"}));
-  EXPECT_EQ(flowed(style, {{"abcdefghijklmno"}, {"  p"}}, 2), (Lines{"abcdefghijk>", "  p"}));
+  EXPECT_EQ(wrap_spans(style, {{"abcdef"}, {"   ghi"}, {"   jkl"}}, 2), (Lines{"abcdef   ghi", "  jkl"}));
+  EXPECT_EQ(wrap_spans(style, {{"abcdefghijklmno"}, {"  p"}}, 2), (Lines{"abcdefghijk>", "  p"}));
 }
 
 TEST(StyledLine, TextBreaksAtBlanks) {
   const ViewStyle style{10, false, false};
-  EXPECT_EQ(broken(style, "one two three four", Tone::plain, 2), (Lines{"one two", "  three", "  four"}));
-  EXPECT_EQ(broken(style, "abcdefghijklm", Tone::plain, 2), (Lines{"abcdefghij", "  klm"}));
-  EXPECT_EQ(broken(style, "one\ntwo", Tone::plain, 2), (Lines{"one", "  two"}));
-  EXPECT_EQ(broken(style, "", Tone::plain, 2), (Lines{""}));
+  EXPECT_EQ(wrap_text(style, "one two three four", Tone::plain, 2), (Lines{"one two", "  three", "  four"}));
+  EXPECT_EQ(wrap_text(style, "abcdefghijklm", Tone::plain, 2), (Lines{"abcdefghij", "  klm"}));
+  EXPECT_EQ(wrap_text(style, "one\ntwo", Tone::plain, 2), (Lines{"one", "  two"}));
+  EXPECT_EQ(wrap_text(style, "", Tone::plain, 2), (Lines{""}));
   for (const std::size_t columns : {0U, 1U, 2U}) {
-    EXPECT_FALSE(broken({columns, false, false}, "one two", Tone::plain, 4).empty())
+    EXPECT_FALSE(wrap_text({columns, false, false}, "one two", Tone::plain, 4).empty())
         << "the function must return even if the line is too narrow";
   }
 }
