@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Measures the duration of a vent under attack by hostile clients: vent_times.py [--times 20] [--page] [--only WORD]
 
-Repeats every test of Hearing (tests/system/test_hearing.py) that vents during an attack, each time with its own rig
-and daemon. Prints the longest and the median time from the line of the client until the outputs are below 1 kPa.
---page writes the table into docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD). The test with
-a full disk needs the right to mount one.
+Repeats every test of VentsUnderAttack (tests/system/test_vents_under_attack.py) that vents during an attack, each time
+with its own rig and daemon. Prints the longest and the median time from the line of the client until the outputs are
+below 1 kPa. --page writes the table into docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD).
+The test with a full disk needs the right to mount one.
 """
 
 import argparse
@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/results/vents-under-attack.md"
 MARKS = ("<!-- vents: written by scripts/vent_times.py --page -->\n", "<!-- /vents -->")
 sys.path.insert(0, str(ROOT / "tests/system"))
-import test_hearing  # noqa: E402
+import test_vents_under_attack  # noqa: E402
 
 ATTACKS = (
     ("test_a_vent_takes_less_than_0_5_s_with_1000_silent_connections", "1,000 silent connections"),
@@ -38,15 +38,15 @@ def repeated(name, times):
     """Returns the duration of every vent [s], and the number of runs in which a test failed."""
     waited, wrong = [], 0
     for _ in range(times):
-        test_hearing.Hearing.waited_s.clear()
+        test_vents_under_attack.VentsUnderAttack.waited_s.clear()
         with open(os.devnull, "w") as quiet, contextlib.redirect_stdout(quiet):
-            outcome = unittest.TextTestRunner(quiet, verbosity=0).run(test_hearing.Hearing(name))
+            outcome = unittest.TextTestRunner(quiet, verbosity=0).run(test_vents_under_attack.VentsUnderAttack(name))
         for _, text in outcome.failures + outcome.errors:
             print(f"{name}:\n{text}", file=sys.stderr)
         for _, reason in outcome.skipped:
             sys.exit(f"{name}: {reason}")
         wrong += not outcome.wasSuccessful()
-        waited += test_hearing.Hearing.waited_s.get(name, [])
+        waited += test_vents_under_attack.VentsUnderAttack.waited_s.get(name, [])
     return waited, wrong
 
 

@@ -13,7 +13,7 @@ import fail_nth
 from exit_codes import Command, ENDINGS, FullDisk, Runner, STOPPING, code_of
 
 TWIN = "config/models/bench_twin.yaml"
-DESK = {
+FILE_COMMANDS = {
     "init": Command("init {out}/new.yaml --board simulated", "init config/rig.yaml --board simulated", "bench_twin.yaml",
                     "new.yaml", new=True),
     "check": Command("check config/rig.yaml", "check bad.yaml", "config/rig.yaml"),
@@ -84,7 +84,7 @@ NEEDS_SHIM = unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built:
 class Page(unittest.TestCase):
     def test_the_table_lists_every_tested_command_with_valid_codes(self):
         table = exit_codes.table()
-        self.assertEqual(set(table), set(DESK) | set(CLIENTS) | set(MOTION) | set(exit_codes.ELSEWHERE))
+        self.assertEqual(set(table), set(FILE_COMMANDS) | set(CLIENTS) | set(MOTION) | set(exit_codes.ELSEWHERE))
         for command, cells in table.items():
             self.assertEqual(set(cells), set(ENDINGS))
             for cell in cells.values():
@@ -97,7 +97,7 @@ class Page(unittest.TestCase):
         self.assertEqual({row.split()[0] for row in exit_codes.table()} & commands, commands)
 
 
-class Desk(bench.BenchTest):
+class FileCommands(bench.BenchTest):
     """Tests the commands that read and write files."""
 
     def setUp(self):
@@ -120,7 +120,7 @@ class Desk(bench.BenchTest):
         self.softgrip("baseline", "--data", "log.csv", "--model", TWIN, "--out", "base")
 
     def each(self, ending, check):
-        exit_codes.each(self, DESK, ending, check)
+        exit_codes.each(self, FILE_COMMANDS, ending, check)
 
     def ended(self, done, cell, number=None):
         said = "" if done.stderr is None else done.stderr.decode(errors="replace")[-1500:]

@@ -148,7 +148,7 @@ class Health(bench.BenchTest):
         self.softgrip("health", *self.healthy, "--baseline", broken, expect=3)
 
 
-class Told(web.WebTest):
+class LastHealthResult(web.WebTest):
     """Tests that every program that reads the last result of softgrip health shows it. The service writes this result
     next to the recordings."""
 

@@ -15,7 +15,7 @@ ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.S
           signal.SIGXCPU, signal.SIGVTALRM, signal.SIGPROF, signal.SIGIO, signal.SIGPWR, signal.SIGRTMIN)
 
 
-class Masters(bench.BenchTest):
+class BoardOwnership(bench.BenchTest):
     def second_rig(self, rig):
         """Writes a second rig file with the same board and a different socket."""
         text = rig.read_text().replace("softgripd.sock", "second.sock")

@@ -50,7 +50,7 @@ asyncio.run(work(*sys.argv[1:]))
 """
 
 
-class Leaving(quiet_rig.QuietRigTest):
+class BlockExit(quiet_rig.QuietRigTest):
     def proxy(self):
         proxy = SocketProxy(self.folder / "proxy.sock", self.path)
         self.addCleanup(proxy.close)

@@ -1,7 +1,7 @@
 """Tests that the daemon executes a vent request during all kinds of disturbances. The disturbances are floods of
 requests, pipelined commands, many silent clients, clients that stop reading, files that never respond, a full disk,
-and a log reader that hangs. scripts/vent_times.py repeats those tests of the class Hearing that vent, and prints the
-longest time.
+and a log reader that hangs. scripts/vent_times.py repeats those tests of the class VentsUnderAttack that vent, and
+prints the longest time.
 """
 
 import json
@@ -45,7 +45,7 @@ LAST_WORDS = (('{"command":"ve', 1), ('{"command":"events","limit":1000}\n', 10_
               ('{"command":"subscribe","since":0}\n{"command":"watch","rate_hz":50}\n', 1))
 
 
-class Hearing(bench.BenchTest):
+class VentsUnderAttack(bench.BenchTest):
     waited_s = {}  # measured times of all vents, by the name of the test
 
     def setUp(self):
@@ -286,7 +286,7 @@ class Ending(bench.BenchTest):
         self.assertLess(time.monotonic() - began, 5)
 
 
-class AnotherMaster(bench.BenchTest):
+class AnotherModbusClient(bench.BenchTest):
     def test_another_modbus_client_causes_fault_f304_and_a_vent(self):
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
