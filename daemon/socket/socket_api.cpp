@@ -44,14 +44,10 @@ SocketApi::~SocketApi() {
 
 void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now) {
   const auto request = parse_client_request(line);
-  if (!request) {
-    send_error(client, request.error().id, error_json("bad_request", request.error().message));
-    return;
-  }
-  if (const Json refusal = refusal_of(client, *request); !refusal.is_null()) {
-    send_error(client, request->id, refusal);
-    return;
-  }
+  if (!request)
+    return send_error(client, request.error().id, error_json("bad_request", request.error().message));
+  if (const Json refusal = refusal_of(client, *request); !refusal.is_null())
+    return send_error(client, request->id, refusal);
   switch (request->command) {
     case Command::hello:
       process_hello(client, *request);
@@ -253,10 +249,7 @@ Json SocketApi::refusal_of_id(const std::string& start_id) const {
 }
 
 void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds now) {
-  if (request.request || !request.start_id.empty()) {
-    stop_of(client, request, now);
-    return;
-  }
+  if (request.request || !request.start_id.empty()) return stop_of(client, request, now);
   refuse_loading();
   submit(client, request.id, Kind::stop, nullptr, now);
 }
