@@ -94,10 +94,11 @@ class Gripper:
         self.ask("acknowledge")
 
     def wait_until(self, *wanted: Result, timeout_s: float) -> Result:
-        """Waits until the overall result of the last start is one of `wanted`, and returns this result. Each result is
-        checked by one call only; results that arrived before the call are checked too. Raises GripFailed if the result
-        is NO PART, PART LOST or ERROR and is not in `wanted`. Also raises GripFailed if the sequence ends before such a
-        result."""
+        """Waits until the overall result of the last start is one of `wanted`, and returns this result. A result that
+        was reported before the call counts, until a call has returned it and the sequence has reported a later result
+        or has ended. Raises GripFailed if the grip reports NO PART, PART LOST or ERROR and this result is not in
+        `wanted`, also if the grip reported a result in `wanted` before. Also raises GripFailed if the sequence ends
+        without such a result, or ends other than with `done`."""
         end = time.monotonic() + timeout_s
         while True:
             result = self._session.reached(frozenset(wanted))

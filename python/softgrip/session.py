@@ -64,9 +64,42 @@ class _Story:
     """The results of one grip, collected from the events of the grip."""
 
     def __init__(self) -> None:
-        self.results: collections.deque[Result] = collections.deque()
+        self.results: list[Result] = []  # results that wait_until() may return, in the order in which they were reported
+        self.received = False  # True if the program has received the only result in `results`
         self.last = Result.NONE
         self.end: Optional[SequenceEnd] = None
+
+    def report(self, result: Result) -> None:
+        self._supersede()
+        self.last = result
+        self.results.append(result)
+
+    def finish(self, end: SequenceEnd) -> None:
+        self._supersede()
+        self.end = end
+
+    def _supersede(self) -> None:
+        """Discards the result that the program has received, because it is no longer the state of the grip."""
+        if self.received:
+            self.results.clear()
+        self.received = False
+
+    def receive(self, wanted: frozenset[Result]) -> Optional[Result]:
+        """Returns the first failure. If there is none, returns the first result in `wanted`, or None. A sequence that
+        did not complete has no result except a failure. Discards the results before the returned result. If the
+        returned result is the last one, it remains the result until `report()` or `finish()` is called."""
+        completed = self.end in (None, SequenceEnd.DONE)
+        found = next((result for result in self.results if result in FAILURES), None) or \
+            next((result for result in self.results if result in wanted and completed), None)
+        if found is None:
+            return None
+        place = self.results.index(found)
+        if place + 1 < len(self.results):
+            del self.results[:place + 1]
+        else:
+            del self.results[:place]
+            self.received = True
+        return found
 
 
 class Session:
@@ -139,7 +172,8 @@ class Session:
             self.starts.clear()
             self._start_of.clear()
             story = self._story(self.grip)
-            story.end = story.end or SequenceEnd.FAULTED
+            if story.end is None:
+                story.finish(SequenceEnd.FAULTED)
             self._stories.clear()
             if self.grip:
                 self.grip = OF_ANOTHER_DAEMON
@@ -197,11 +231,9 @@ class Session:
         if event.request is None:
             return
         if event.kind == "overall_result" and event.code:
-            story = self._story(event.request)
-            story.last = checked(Result, event.code, "event.code")
-            story.results.append(story.last)
+            self._story(event.request).report(checked(Result, event.code, "event.code"))
         elif event.kind == "sequence_finished" and event.code:
-            self._story(event.request).end = checked(SequenceEnd, event.code, "event.code")
+            self._story(event.request).finish(checked(SequenceEnd, event.code, "event.code"))
             self._drop_ended()
 
     def _story(self, request: int) -> _Story:
@@ -214,14 +246,11 @@ class Session:
         """Returns the result of the last start if this result is in `wanted`; None if the last start has no result yet.
         Raises GripFailed if the grip failed or the sequence ended."""
         story = self._story(self.grip)
-        while story.results:
-            result = story.results.popleft()
-            if result in wanted:
-                return result
-            if result in FAILURES:
-                raise GripFailed(result, story.end)
-        if story.end:
-            raise GripFailed(story.last, story.end)
+        result = story.receive(wanted)
+        if result in wanted:
+            return result
+        if result is not None or story.end:
+            raise GripFailed(result or story.last, story.end)
         return None
 
     def ended(self) -> Optional[SequenceEnd]:

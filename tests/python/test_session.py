@@ -49,6 +49,47 @@ class Story(unittest.TestCase):
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
         self.assertFalse(told.session.starts)
 
+    def test_a_result_is_returned_again_until_a_later_result(self):
+        told = Events()
+        told.tell("overall_result", "HOLDING")
+        for _ in range(3):
+            self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        self.assertIsNone(told.reached(softgrip.Result.RELEASED))
+        self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        told.tell("overall_result", "RELEASED")
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING), "this hold was received and is over")
+        told.tell("overall_result", "HOLDING")
+        self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        told.tell("sequence_finished", "done")
+        with self.assertRaises(softgrip.GripFailed):
+            told.reached(softgrip.Result.HOLDING)
+
+    def test_a_result_before_a_returned_result_is_not_returned_later(self):
+        told = Events()
+        for code in ("HOLDING", "RELEASED"):
+            told.tell("overall_result", code)
+        self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+
+    def test_a_failure_takes_precedence_over_an_earlier_hold(self):
+        told = Events()
+        told.tell("overall_result", "HOLDING")
+        told.tell("overall_result", "PART LOST")
+        for _ in range(2):
+            with self.assertRaises(softgrip.GripFailed) as raised:
+                told.reached(softgrip.Result.HOLDING)
+            self.assertEqual(raised.exception.result, softgrip.Result.PART_LOST)
+        self.assertEqual(told.reached(softgrip.Result.HOLDING, softgrip.Result.PART_LOST), softgrip.Result.PART_LOST)
+
+    def test_a_hold_of_a_stopped_sequence_is_not_reported(self):
+        for end in ("stopped", "faulted", "failed"):
+            told = Events()
+            told.tell("overall_result", "HOLDING")
+            told.tell("sequence_finished", end)
+            with self.assertRaises(softgrip.GripFailed) as raised:
+                told.reached(softgrip.Result.HOLDING)
+            self.assertEqual((raised.exception.result, raised.exception.end.value), (softgrip.Result.HOLDING, end))
+
     def test_an_unexpected_result_or_end_raises_grip_failed(self):
         told = Events()
         told.tell("overall_result", "NO PART")
@@ -101,7 +142,10 @@ class Story(unittest.TestCase):
         # The reply belongs to a request to the new daemon. Requests to the old and to the new daemon can have the same
         # number.
         told.tell("overall_result", "RELEASED")
-        self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        with self.assertRaises(softgrip.GripFailed) as raised:
+            told.reached(softgrip.Result.HOLDING)
+        self.assertEqual((raised.exception.result, raised.exception.end),
+                         (softgrip.Result.HOLDING, softgrip.SequenceEnd.FAULTED))
         told.session.grip = 3
         self.assertFalse(told.session.ended())
         self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)

@@ -54,6 +54,24 @@ class Python(bench.BenchTest):
         self.assertTrue((left["result"] == "holding").any())
         self.assertLess(left["displacement_mm"][left["result"] == "holding"].max(), 13.5)
 
+    def test_repeated_calls_return_the_hold_until_it_is_over(self):
+        gripper = self.gripper()
+        gripper.start("pick_stone")
+        for _ in range(3):
+            self.assertEqual(gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S), softgrip.Result.HOLDING)
+            self.assertIsNone(gripper.status().sequence.ended, "the call returns during the hold")
+        self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.DONE)
+        with self.assertRaises(softgrip.GripFailed) as failed:
+            gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
+        self.assertEqual((failed.exception.result, failed.exception.end),
+                         (softgrip.Result.RELEASED, softgrip.SequenceEnd.DONE))
+
+    def test_the_first_call_after_the_end_returns_the_hold(self):
+        gripper = self.gripper()
+        gripper.start("pick_stone", hold_s=1)
+        self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.DONE)
+        self.assertEqual(gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S), softgrip.Result.HOLDING)
+
     def test_an_exception_in_the_with_block_stops_the_sequence(self):
         with self.assertRaises(KeyboardInterrupt), self.gripper() as gripper:
             gripper.start("pick_stone")
