@@ -1,7 +1,10 @@
-"""Tests that each example in examples/python runs, is a single file and has at most 80 lines."""
+"""Tests that each example in examples/python runs, is a single file and has at most 80 lines. Also runs the Python code of
+docs/how-to/python.md."""
 
+import contextlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -58,7 +61,18 @@ class Examples(unittest.TestCase):
         self.assertRegex(said, r"0001-none: .*none\.csv")
 
     def check_grip(self, at):
-        """Runs the examples that need a daemon. The board of the daemon is simulated."""
+        """Runs the examples that need a daemon."""
+        with self.daemon(at):
+            said = self.run_example("grip_and_wait.py", at / "socket")
+            self.assertIn("result: HOLDING", said)
+            self.assertIn("end: done", said)
+            self.assertIn("did you mean", subprocess.run(
+                [sys.executable, EXAMPLES / "grip_and_wait.py", at / "socket", "pick_stome"], capture_output=True, text=True,
+                env={**os.environ, "PYTHONPATH": str(SOURCE / "python")}).stderr)
+
+    @contextlib.contextmanager
+    def daemon(self, at):
+        """Runs a daemon whose board is simulated and whose socket is `at / "socket"`."""
         text = (SOURCE / "config/rig.yaml").read_text()
         for before, after in (("/tmp/softgrip.sock", f"{at}/socket"), ("/tmp/softgrip-runs", f"{at}/runs"),
                               ("models/bench_twin.yaml", str(MODEL)),
@@ -72,14 +86,40 @@ class Examples(unittest.TestCase):
                 end = time.monotonic() + 30
                 while not (at / "socket").exists() and time.monotonic() < end:
                     time.sleep(0.05)
-                said = self.run_example("grip_and_wait.py", at / "socket")
-                self.assertIn("result: HOLDING", said)
-                self.assertIn("end: done", said)
-                self.assertIn("did you mean", subprocess.run(
-                    [sys.executable, EXAMPLES / "grip_and_wait.py", at / "socket", "pick_stome"], capture_output=True, text=True,
-                    env={**os.environ, "PYTHONPATH": str(SOURCE / "python")}).stderr)
+                yield
             finally:
                 daemon.terminate()
+
+    def run_snippet(self, at, code):
+        """Runs code of the page in the folder `at`, in which the file names of the code are relative."""
+        if "async with" in code:
+            inner = "\n".join("    " + line for line in code.splitlines())
+            code = f"import asyncio, softgrip\nasync def main():\n{inner}\nasyncio.run(main())"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=at, timeout=300,
+                              env={**os.environ, "PYTHONPATH": str(BUILD / "python"), "SOFTGRIP_SOCKET": str(at / "socket")})
+        self.assertEqual(done.returncode, 0, code + done.stderr)
+
+    def test_the_code_of_the_page_runs(self):
+        page = (SOURCE / "docs/how-to/python.md").read_text()
+        robot, tasks, models, recordings = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+        with tempfile.TemporaryDirectory() as folder:
+            at = pathlib.Path(folder)
+            shutil.copy(MODEL, at / "model.yaml")
+            for command in (["simulate", "--model", "model.yaml", "--input", "tp1", "--rate-hz", "20", "--noise-mm", "0.05",
+                             "--out", "measured.csv"],
+                            ["diagnose", "--model", "model.yaml", "--data", "measured.csv", "--out", "OUT"]):
+                subprocess.run([BUILD / "tools/softgrip", *command], check=True, capture_output=True, cwd=at)
+            self.run_snippet(at, models)
+            self.assertTrue((at / "extended.yaml").exists())
+            with self.daemon(at):
+                self.run_snippet(at, robot)
+            (run,) = (at / "runs").iterdir()
+            code, replaced = re.subn(r"/var/lib/softgrip/runs/[^\"]*", str(run), recordings)
+            self.assertEqual(replaced, 1)
+            self.run_snippet(at, code)
+            shutil.rmtree(at / "runs")
+            with self.daemon(at):
+                self.run_snippet(at, tasks)
 
     def test_every_example_has_at_most_80_lines(self):
         for path in EXAMPLES.glob("*.py"):
