@@ -22,7 +22,7 @@ std::optional<sysid::StructureQuestion> question_of(Structure structure) {
       return sysid::StructureQuestion::automatic;
     case Structure::bouc_wen:
       return sysid::StructureQuestion::bouc_wen;
-    case Structure::play:
+    case Structure::prandtl_ishlinskii:
       return sysid::StructureQuestion::prandtl_ishlinskii;
   }
   throw InvalidArgument("structure", "not a Structure");

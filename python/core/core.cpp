@@ -180,7 +180,7 @@ py::dict identified(const py::list& logs, const std::string& structure, const st
                                         {{"start", Structure::start},
                                          {"auto", Structure::automatic},
                                          {"bouc_wen", Structure::bouc_wen},
-                                         {"play", Structure::play}});
+                                         {"prandtl_ishlinskii", Structure::prandtl_ishlinskii}});
   options.start = start;
   options.branches = branches;
   options.fixed = fixed;

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterable
 from typing import Any, Optional, Union
 
@@ -72,7 +73,8 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
     """Fits a model to logs, as `softgrip identify` does.
 
     structure: "start" uses the structure of `start`, or the default structure with `branches` creep branches. "auto",
-    "bouc_wen" and "play" select a structure by the error on held-out blocks of the logs. fixed: parameters that keep
+    "bouc_wen" and "prandtl_ishlinskii" select a structure by the error on held-out blocks of the logs ("play" is a
+    deprecated name of "prandtl_ishlinskii"). fixed: parameters that keep
     their start value. free: parameters that are estimated; by default, all parameters except those in `fixed`. starts:
     number of start points. fit_share: share of each log that is fitted, from its start; 0.05 to 1. threads: number of
     threads, 0 for one per processor core. drive: "command" or "measured" pressure as the input. begin: state of the
@@ -88,8 +90,11 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
     >>> identify(log, start=model, starts=1).rmse < 0.06
     True
     """
+    if text_of("structure", structure) == "play":
+        warnings.warn('structure="play" is deprecated; use "prandtl_ishlinskii"', DeprecationWarning, stacklevel=2)
+        structure = "prandtl_ishlinskii"
     found = _core.identify(
-        _columns("logs", logs), text_of("structure", structure), None if start is None else _model("start", start),
+        _columns("logs", logs), structure, None if start is None else _model("start", start),
         _whole("branches", branches), _names("fixed", fixed), _names("free", free), _whole("starts", starts),
         _whole("seed", seed), _flag("robust", robust), _number("fit_share", fit_share), _whole("threads", threads, _MOST_THREADS),
         text_of("drive", drive), text_of("begin", begin), _flag("held", held), _columns("validation", validation),

@@ -92,6 +92,16 @@ class EqualToTheCommands(unittest.TestCase):
         found = identify(self.logs["one"], "auto", starts=3)
         self.assertEqual(plain(found.report, "call", "wall_s"), plain(expected, "call", "wall_s"))
 
+    def test_identify_accepts_the_structures_of_the_command(self):
+        t, pressure = sine(samples=200)
+        log = Log(t, pressure, Model.load(MODEL).simulate(t, pressure, noise=0.05))
+        found = identify(log, structure="prandtl_ishlinskii")
+        self.assertTrue(any(name.startswith("prandtl_ishlinskii.") for name in found.model.parameters))
+        with self.assertWarnsRegex(DeprecationWarning, "prandtl_ishlinskii"):
+            self.assertEqual(identify(log, structure="play").model, found.model)
+        with self.assertRaisesRegex(softgrip.InvalidArgument, "'start', 'auto', 'bouc_wen', 'prandtl_ishlinskii'"):
+            identify(log, structure="plays")
+
     def test_validate_returns_the_report_of_the_command(self):
         expected = json.loads(command("validate", "--json", "--model", self.at / "stiffer.yaml", "--data",
                                       self.at / "one.csv", self.at / "two.csv"))

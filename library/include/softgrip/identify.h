@@ -60,8 +60,9 @@ enum class Structure : std::uint8_t {
   automatic,  ///< the structure with the smallest error on held-out blocks of the logs
   bouc_wen,   ///< the structure with the smallest error on held-out blocks, among structures with a Bouc-Wen
               ///< hysteresis
-  play,       ///< the structure with the smallest error on held-out blocks, among structures with play
-              ///< operators (Prandtl-Ishlinskii)
+  prandtl_ishlinskii,  ///< the structure with the smallest error on held-out blocks, among structures with
+                       ///< play operators
+  play [[deprecated("use prandtl_ishlinskii")]] = prandtl_ishlinskii,  ///< deprecated name
 };
 
 /// Settings of identify().
