@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from .aio import AsyncGripper
 from .client import Gripper
-from .errors import (BusError, ConnectionLost, GripFailed, InvalidArgument, MalformedFile, NoDaemon, NoResult, NotAnswered,
-                     Owned, ProtocolError, Refused, SequenceRefused, SoftgripError, StopNotConfirmed)
+from .errors import (BusError, ConnectionLost, GripFailed, InvalidArgument, MalformedFile, MissingFile, NoDaemon, NoResult,
+                     NotAnswered, Owned, ProtocolError, Refused, SequenceRefused, SoftgripError, StopNotConfirmed,
+                     UnreadableFile)
 from .messages import (Channel, Checked, Event, Fault, Grip, Hello, Parameter, Problem, Result, Sequence, SequenceEnd,
                        SequenceState, State, Status)
 
@@ -62,9 +63,9 @@ __all__ = [
     "AsyncGripper", "Board", "BusError", "Cause", "Change", "Channel", "Checked", "ConnectionLost", "ControlOutput",
     "Controller", "Diagnosis", "Estimate", "Event", "Fault", "FingerHealth", "Grip", "GripFailed", "Gripper", "Health",
     "HealthAlarm", "HealthIndicator", "Hello", "Identification", "InvalidArgument", "Inverse", "LimitedCommand", "Limits",
-    "Log", "MalformedFile", "Model", "ModelParameter", "NoDaemon", "NoResult", "NotAnswered", "Owned", "Parameter", "Pid",
-    "PidSettings", "Prediction", "Problem", "ProtocolError", "Reading", "Reference", "Refused", "Result", "Sequence",
+    "Log", "MalformedFile", "MissingFile", "Model", "ModelParameter", "NoDaemon", "NoResult", "NotAnswered", "Owned",
+    "Parameter", "Pid", "PidSettings", "Prediction", "Problem", "ProtocolError", "Reading", "Reference", "Refused", "Result", "Sequence",
     "SequenceEnd", "SequenceRefused", "SequenceState", "SimulatedBoard", "SimulatedFinger", "SimulatedObject",
-    "SoftgripError", "State", "Status", "StopNotConfirmed", "Suspect", "Validation", "diagnose", "health", "identify",
+    "SoftgripError", "State", "Status", "StopNotConfirmed", "Suspect", "UnreadableFile", "Validation", "diagnose", "health", "identify",
     "limit", "validate",
 ]

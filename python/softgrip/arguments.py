@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Mapping
+import stat
+from collections.abc import Iterator, Mapping
 from typing import Optional, Union
 
-from .errors import InvalidArgument
+from .errors import InvalidArgument, MalformedFile, MissingFile, UnreadableFile
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -35,6 +37,22 @@ def file_path_of(argument: str, value: Path) -> str:
 def path_of(argument: str, value: Path) -> str:
     """Returns the path as a text in UTF-8, which the library requires for its messages."""
     return text_of(argument, file_path_of(argument, value))
+
+
+@contextlib.contextmanager
+def reads(*paths: str) -> Iterator[None]:
+    """Raises UnreadableFile in place of MalformedFile if one of the files cannot be opened. The block reads the files."""
+    try:
+        yield
+    except MalformedFile:
+        for path in paths:
+            try:
+                if stat.S_ISREG(os.stat(path).st_mode):
+                    os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC))
+            except OSError as error:
+                kind = MissingFile if isinstance(error, FileNotFoundError) else UnreadableFile
+                raise kind(error.errno, error.strerror, path) from None
+        raise
 
 
 def texts_of(argument: str, value: Optional[Mapping[str, str]]) -> dict[str, str]:

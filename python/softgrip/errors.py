@@ -76,6 +76,14 @@ class MalformedFile(SoftgripError, ValueError):
     """A recording, log or report does not have the format that softgrip writes."""
 
 
+class UnreadableFile(OSError, MalformedFile):
+    """A model or a log cannot be opened. The attributes `errno` and `filename` are those of `OSError`."""
+
+
+class MissingFile(FileNotFoundError, UnreadableFile):
+    """A model or a log does not exist."""
+
+
 # Arguments of the C++ library that have a different name in this package.
 _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa": "command", "supply_kpa": "supply",
               "temperature_c": "temperature", "pressure_min_kpa": "pressure_min", "pressure_max_kpa": "pressure_max",

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from .arguments import Path, path_of, text_of, texts_of
+from .arguments import Path, path_of, reads, text_of, texts_of
 from .errors import InvalidArgument
 
 Vector = npt.NDArray[np.float64]
@@ -103,8 +103,10 @@ class Model:
     @classmethod
     def load(cls, path: Path) -> Model:
         """Reads a model file. Raises `MalformedFile` if the file is not a valid model; the text names each problem with
-        line and column."""
-        return cls(_core.Model.load(path_of("path", path)))
+        line and column. If the file cannot be opened, the exception is also an `OSError`, such as `FileNotFoundError`."""
+        file = path_of("path", path)
+        with reads(file):
+            return cls(_core.Model.load(file))
 
     @classmethod
     def parse(cls, yaml: str, name: str = "model") -> Model:
@@ -272,11 +274,13 @@ class Log:
 
         columns: for each role (time, command, pressure, displacement, temperature, supply), the name of a column, or
         its number counted from 1. units: unit for each role whose unit is not in the file. rate_hz: samples per second
-        of a file without times.
+        of a file without times. Raises the exceptions of `Model.load()`.
         """
-        found = _core.read_log(path_of("path", path), text_of("channel", channel), _flag("import_file", import_file),
-                               texts_of("columns", columns), texts_of("units", units),
-                               None if rate_hz is None else _number("rate_hz", rate_hz, "Hz"), text_of("sheet", sheet))
+        file = path_of("path", path)
+        with reads(file):
+            found = _core.read_log(file, text_of("channel", channel), _flag("import_file", import_file),
+                                   texts_of("columns", columns), texts_of("units", units),
+                                   None if rate_hz is None else _number("rate_hz", rate_hz, "Hz"), text_of("sheet", sheet))
         return cls(found["time_s"], found["pressure_command_kpa"], found["displacement"], found["pressure_kpa"],
                    found["temperature_c"], found["supply_kpa"], found["unit"], found["name"], found["path"],
                    found["sha256"], tuple(found["notes"]))

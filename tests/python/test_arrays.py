@@ -183,6 +183,24 @@ class Objects(unittest.TestCase):
         with self.assertRaisesRegex(softgrip.InvalidArgument, "^pressure: value 201 is nan"):
             Model.load(MODEL).simulate(t, masked)
 
+    def test_a_file_that_cannot_be_opened_raises_an_os_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            missing, plain_file = pathlib.Path(folder, "x.yaml"), pathlib.Path(folder, "file")
+            plain_file.write_text("name: [")
+            for read in (Model.load, Log.read):
+                with self.assertRaises(FileNotFoundError) as raised:
+                    read(missing)
+                self.assertIsInstance(raised.exception, softgrip.MalformedFile)
+                self.assertEqual(str(raised.exception), f"[Errno 2] No such file or directory: '{missing}'")
+                self.assertEqual(raised.exception.filename, str(missing))
+                self.assertEqual(repr(pickle.loads(pickle.dumps(raised.exception))), repr(raised.exception))
+                with self.assertRaises(softgrip.UnreadableFile) as raised:
+                    read(plain_file / "x.yaml")
+                self.assertIsInstance(raised.exception, OSError)
+                with self.assertRaises(softgrip.MalformedFile) as raised:
+                    read(plain_file)
+                self.assertNotIsInstance(raised.exception, OSError)
+
     def test_an_exception_can_be_pickled(self):
         with self.assertRaises(softgrip.InvalidArgument) as caught:
             Model.load(MODEL).simulate([0, 1], [0, np.nan])
