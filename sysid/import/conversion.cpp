@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "sysid/import/clock.h"
+#include "sysid/import/proposal.h"
 #include "sysid/import/role_sources.h"
 #include "sysid/import/samples.h"
 #include "sysid/logs/log_columns.h"
@@ -304,6 +305,8 @@ std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& map
   document::Problems refused;
   LogOptions options;
   options.channel = mapping.channel;
+  const Role of_command = mapping[Role::command].given() ? Role::command : Role::pressure;
+  options.command_unit = unit_text(table, mapping[of_command], spec_of(of_command).quantity);
   auto read = parse_log(table.file, format_log(result->log), refused, options);
   for (const document::Problem& problem : refused.list())
     problems.add({table.file, {1, 1}, {}, "the result is not a valid log: " + problem.message, problem.hint});

@@ -85,6 +85,8 @@ struct LogOptions {
   /// first log.
   std::optional<model::OutputUnit> output_unit;
   std::string output_unit_of;
+  /// Unit from which an import has converted the command ("bar"). "": the command of the file is in kPa.
+  std::string command_unit;
   /// A log is refused if the share of clipped readings exceeds this value (1: never refused). If a smaller
   /// share of the readings is clipped, the log gets a note.
   double clipped_share_refused = 0.2;

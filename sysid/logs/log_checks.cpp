@@ -54,7 +54,7 @@ class Check {
     if (!time_increases()) return;
     sampling_ = sampling_of(log_);
     time_plausible();
-    magnitudes();
+    magnitudes(options.command_unit);
     if (!options.need_readings) return;
     intervals();
     missing_readings();
@@ -152,7 +152,8 @@ class Check {
     return std::binary_search(codes.begin(), codes.end(), value);
   }
 
-  void magnitudes() {
+  /// @param command_unit  LogOptions::command_unit.
+  void magnitudes(const std::string& command_unit) {
     const auto largest = [](const std::vector<double>& values) {
       return static_cast<std::size_t>(std::max_element(values.begin(), values.end(),
                                                        [](double a, double b) {
@@ -164,23 +165,24 @@ class Check {
     const std::size_t p = largest(log_.pressure_command_kpa);
     const std::size_t y = largest(log_.displacement_mm);
     if (std::abs(log_.pressure_command_kpa[p]) > largest_pressure_kpa) {
-      refuse(p, source_.command_column, "a command of " + significant(log_.pressure_command_kpa[p]) + " kPa",
-             "if the column is in Pa, divide the values by 1000");
-    } else if (command_.width() > 0 && std::max(-command_.lowest, command_.highest) < small_pressure_kpa) {
-      note(p, "the command stays below " + significant(small_pressure_kpa) +
-                  " kPa; check if the column is in bar");
+      refuse(p, source_.command_column,
+             "a command of " + significant(log_.pressure_command_kpa[p]) +
+                 " kPa; the permitted magnitude is at most " + significant(largest_pressure_kpa) + " kPa",
+             command_unit.empty()
+                 ? "if the column is in Pa, divide the values by 1000"
+                 : "the command was converted from " + command_unit +
+                       ". If its values have a different unit, give this unit, such as --unit command=kPa");
     }
     if (std::abs(log_.displacement_mm[y]) > largest_displacement_mm) {
       refuse(y, source_.displacement_column,
-             in_unit("a displacement of ") + significant(log_.displacement_mm[y]) + in_unit(" mm"),
+             in_unit("a displacement of ") + significant(log_.displacement_mm[y]) +
+                 in_unit(" mm; the permitted magnitude is at most ") + significant(largest_displacement_mm) +
+                 in_unit(" mm"),
              is_code(log_.displacement_mm[y])
                  ? "if this value is a code for a missing reading, remove it with softgrip import --missing"
              : log_.output_unit == model::OutputUnit::deg
                  ? "check if the column is in degrees"
                  : "if the column is in micrometres, divide the values by 1000");
-    } else if (const double span = span_mm(log_); span > 0 && span < small_reading(log_.output_unit)) {
-      note(y, in_unit("the displacement spans ") + significant(span) + in_unit(" mm: is the column in ") +
-                  (log_.output_unit == model::OutputUnit::deg ? "radians?" : "metres?"));
     }
   }
 

@@ -112,15 +112,22 @@ double loop_share(const std::vector<double>& pressure, const std::vector<double>
   return area / (p->width() * y->width() * loops);
 }
 
-void check_response(const Log& log, std::vector<std::string>& warnings) {
+void check_response(const Log& log, ReadingSign sign, std::vector<std::string>& warnings) {
   const std::vector<double>& drive = drive_of(log);
   const double correlation = sums_of(drive, log.displacement_mm).correlation();
   if (correlation < -clear_correlation) {
-    warnings.push_back(
-        "the reading decreases when the pressure increases (correlation " + significant(correlation, 3) +
-        "). If the sensor is mounted in reverse, use `softgrip import --scale displacement=-X` with "
-        "a negative factor" +
-        (log.output_unit == model::OutputUnit::deg ? " and --unit displacement=deg" : std::string()));
+    const std::string found =
+        "the reading decreases when the pressure increases (correlation " + significant(correlation, 3) + ")";
+    const std::string unit =
+        log.output_unit == model::OutputUnit::deg ? " and --unit displacement=deg" : std::string();
+    warnings.push_back(sign == ReadingSign::reversed
+                           ? found +
+                                 ", and the factor of `--scale displacement` is negative. Use "
+                                 "the opposite sign"
+                           : found +
+                                 ". If the sensor is mounted in reverse, use `softgrip import --scale "
+                                 "displacement=-X` with a negative factor" +
+                                 unit);
     return;
   }
   const double share = loop_share(drive, log.displacement_mm);
@@ -207,9 +214,10 @@ void check_spans(const Log& log, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-std::vector<std::string> plausibility_warnings(const Log& log, const PressureColumn& column) {
+std::vector<std::string> plausibility_warnings(const Log& log, const PressureColumn& column,
+                                               ReadingSign sign) {
   std::vector<std::string> warnings;
-  check_response(log, warnings);
+  check_response(log, sign, warnings);
   check_free_motion(log, warnings);
   check_measured_pressure(log, warnings);
   judge_unit_of_pressure(log, column, warnings);
@@ -227,6 +235,14 @@ std::vector<std::string> plausibility_warnings(const Log& log, const PressureCol
 
 namespace {
 
+/// Returns true if the values of the log show a wrong unit, without a comparison with other logs.
+bool shows_wrong_unit(const Log& log) {
+  std::vector<std::string> warnings;
+  judge_unit_of_pressure(log, {}, warnings);
+  check_spans(log, warnings);
+  return !warnings.empty();
+}
+
 bool same_samples(const Log& a, const Log& b) {
   const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
   return std::ranges::equal(a.displacement_mm, b.displacement_mm, same) &&
@@ -238,11 +254,13 @@ bool same_samples(const Log& a, const Log& b) {
 std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& logs) {
   std::vector<std::string> warnings;
   std::vector<double> gains;
+  std::vector<double> usual_gains;
   for (const Log& log : logs) {
     for (const std::string& warning : plausibility_warnings(log))
       warnings.push_back(logs.size() > 1 ? log.name + ": " + warning : warning);
     const PairSums sums = sums_of(drive_of(log), log.displacement_mm);
     gains.push_back(sums.correlation() > clear_correlation ? sums.slope() : 0);
+    if (gains.back() != 0 && !shows_wrong_unit(log)) usual_gains.push_back(gains.back());
   }
   for (std::size_t i = 1; i < logs.size(); ++i) {
     const auto first = std::find_if(logs.begin(), logs.begin() + static_cast<std::ptrdiff_t>(i),
@@ -251,10 +269,9 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
       warnings.push_back(logs[i].name + ": the log contains the same samples as " + first->name +
                          ". Repeated samples make the confidence intervals too narrow");
   }
-  std::vector<double> clear = gains;
-  std::erase(clear, 0);
-  if (clear.size() < 2) return warnings;
-  const double usual = median_of(std::span(clear));
+  // A log whose own values show a wrong unit must not cause a warning about the other logs.
+  if (usual_gains.empty()) return warnings;
+  const double usual = median_of(std::span(usual_gains));
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (gains[i] <= 0) continue;
     if (const std::string mistake = mistaken_unit(gains[i] / usual, logs[i].output_unit); !mistake.empty())

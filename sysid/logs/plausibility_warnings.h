@@ -15,13 +15,17 @@ struct PressureColumn {
   std::string role = "command";
 };
 
+/// Sign of the factor by which an import has multiplied the readings.
+enum class ReadingSign { kept, reversed };
+
 /// Returns sentences about implausible data. Each sentence contains a number as evidence, and a remedy. The
 /// sentences are about these findings: the reading decreases when the pressure increases; the reading
 /// precedes the pressure; the finger touched an object; command and measured pressure differ by the ratio of
 /// two units; the measured pressure precedes the command; the pressure is absolute; the range of the values
 /// is impossible for a soft finger; the sampling interval is too long.
 [[nodiscard]] std::vector<std::string> plausibility_warnings(const Log& log,
-                                                             const PressureColumn& column = {});
+                                                             const PressureColumn& column = {},
+                                                             ReadingSign sign = ReadingSign::kept);
 
 /// Returns the warnings about each log. If there are several logs, each warning begins with the name of the
 /// log. Also reports logs that repeat the samples of an earlier log, and logs whose motion differs from the

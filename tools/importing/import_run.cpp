@@ -171,7 +171,10 @@ bool finish(Job& job, document::Problems& problems) {
     job.result = std::move(*result);
     job.warnings.insert(job.warnings.end(), job.result.warnings.begin(), job.result.warnings.end());
   }
-  job.plausibility = sysid::plausibility_warnings(job.result.log, pressure_column(job.mapping));
+  const bool reversed = job.mapping[sysid::Role::displacement].scale.value_or(1) < 0;
+  job.plausibility =
+      sysid::plausibility_warnings(job.result.log, pressure_column(job.mapping),
+                                   reversed ? sysid::ReadingSign::reversed : sysid::ReadingSign::kept);
   return true;
 }
 

@@ -152,6 +152,15 @@ TEST(Convert, InvalidResultLogIsRefused) {
             std::string::npos);
 }
 
+TEST(Convert, TooLargeCommandStatesTheUnitFromWhichItWasConverted) {
+  const std::string text =
+      text_of("time_s,set_bar,tip_mm", [](int i, double p, double y) { return plain(i, 3 * p, y); });
+  const std::string said = refusal(text, mapping_of("time_s", "set_bar", "tip_mm"));
+  EXPECT_NE(said.find(" kPa; the permitted magnitude is at most 5000 kPa"), std::string::npos) << said;
+  EXPECT_NE(said.find("the command was converted from bar"), std::string::npos) << said;
+  EXPECT_NE(said.find("--unit command=kPa"), std::string::npos) << said;
+}
+
 TEST(ForeignSamples, BackwardTimeIsReportedWithTheRow) {
   ForeignSamples samples;
   samples[Role::time] = {0, 1, 2, 1.5};

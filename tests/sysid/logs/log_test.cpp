@@ -111,11 +111,11 @@ std::vector<Bad> bad_logs() {
       {"Pascal", with_log([](Log& log) {
          for (double& p : log.pressure_command_kpa) p *= 1000;
        }),
-       51, 8, "a command of", "Pa"},
+       51, 8, "kPa; the permitted magnitude is at most 5000 kPa", "Pa"},
       {"Micrometres", with_log([](Log& log) {
          for (double& y : log.displacement_mm) y *= 1000;
        }),
-       52, 29, "a displacement of", "micrometres"},
+       52, 29, "mm; the permitted magnitude is at most 5000 mm", "micrometres"},
       {"CommandConstant", with_log([](Log& log) {
          for (double& p : log.pressure_command_kpa) p = 20;
        }),

@@ -105,6 +105,43 @@ TEST(PlausibilityWarnings, CorrectLogsGiveNoWarning) {
   }
 }
 
+TEST(PlausibilityWarnings, ReversedReadingsNameTheSignThatIsNeeded) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  for (double& y : log.displacement_mm) y *= -1;
+  EXPECT_NE(all_of(plausibility_warnings(log)).find("with a negative factor"), std::string::npos);
+  const std::string reversed = all_of(plausibility_warnings(log, {}, ReadingSign::reversed));
+  EXPECT_NE(reversed.find("Use the opposite sign"), std::string::npos) << reversed;
+  EXPECT_EQ(reversed.find("with a negative factor"), std::string::npos) << reversed;
+}
+
+/// A log whose pressure is clearly in a wrong unit must not cause a warning about a correct log.
+TEST(PlausibilityWarnings, ACorrectLogIsNotBlamedForTheUnitOfAnotherLog) {
+  std::vector<Log> logs(2, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
+  logs[0].name = "good", logs[1].name = "psi";
+  for (double& p : logs[1].pressure_command_kpa) p /= 6.894757;
+  for (Log& log : logs) {
+    for (double& y : log.displacement_mm) y *= 3;
+  }
+  const std::string warnings = all_of(plausibility_warnings_among(logs));
+  EXPECT_EQ(warnings.find("good: "), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("psi: the finger moves 6.89 times as far per kPa as in the other logs"),
+            std::string::npos)
+      << warnings;
+}
+
+TEST(PlausibilityWarnings, AWarningAboutTheUnitIsNotRepeatedInTheNotesOfTheLog) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0, 7);
+  for (double& y : log.displacement_mm) y /= 1000;
+  for (double& p : log.pressure_command_kpa) p /= 1000;
+  document::Problems problems;
+  const auto read = parse_log("a.csv", format_log(log), problems);
+  ASSERT_TRUE(read) << problems.format();
+  EXPECT_TRUE(read->notes.empty()) << read->notes.front().text;
+  const std::string warnings = all_of(plausibility_warnings(*read));
+  EXPECT_NE(warnings.find("metres"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("MPa"), std::string::npos) << warnings;
+}
+
 TEST(PlausibilityWarnings, SwappedColumnsAreReported) {
   for (const auto signal : {model::SignalName::tp1, model::SignalName::steps, model::SignalName::hold}) {
     Log log = simulated(loaded("bench_twin"), signal, 50, 0.05, 7);
