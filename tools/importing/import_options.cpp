@@ -15,23 +15,25 @@ namespace softgrip::tools {
 namespace {
 
 namespace fs = std::filesystem;
+/// Stores the value of a word in a column. Returns false if the value is invalid.
 using Taken = std::function<bool(sysid::ColumnMapping&, const std::string&)>;
 
 /// Adds settings such as "pressure=psi" from the words of an option to a mapping. The error names the first
 /// invalid word.
-tl::expected<void, std::string> apply(const std::vector<std::string>& words, const char* option,
-                                      sysid::Mapping& mapping, const Taken& take) {
+/// @param values  description of the valid values.
+tl::expected<void, std::string> apply(const std::vector<std::string>& words, const std::string& option,
+                                      const char* values, sysid::Mapping& mapping, const Taken& take) {
   for (const std::string& word : words) {
     const std::size_t equals = word.find('=');
     const std::string role = word.substr(0, equals);
     const auto spec = std::find_if(sysid::roles.begin(), sysid::roles.end(),
                                    [&](const sysid::RoleSpec& s) { return s.word == role; });
-    const bool good = equals != std::string::npos && equals + 1 < word.size() && spec != sysid::roles.end() &&
-                      take(mapping[spec->role], word.substr(equals + 1));
-    if (!good)
+    if (equals == std::string::npos || equals + 1 == word.size() || spec == sysid::roles.end())
       return tl::unexpected(
-          std::string(option) + " " + word +
+          option + " " + word +
           ": ROLE=VALUE is expected; roles are time, command, pressure, displacement, temperature, supply");
+    if (!take(mapping[spec->role], word.substr(equals + 1)))
+      return tl::unexpected(option + " " + word + ": the value of " + role + " must be " + values);
   }
   return {};
 }
@@ -93,11 +95,11 @@ tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& option
     column.unit = text;
     return true;
   };
-  if (auto done = apply(options.units, "--unit", mapping, take_unit); !done)
+  if (auto done = apply(options.units, "--unit", "a unit", mapping, take_unit); !done)
     return tl::unexpected(done.error());
-  if (auto done = apply(options.scales, "--scale", mapping, take_scale); !done)
+  if (auto done = apply(options.scales, "--scale", "a number other than 0", mapping, take_scale); !done)
     return tl::unexpected(done.error());
-  if (auto done = apply(options.zeros, "--zero", mapping, take_zero); !done)
+  if (auto done = apply(options.zeros, "--zero", "a number or the word first", mapping, take_zero); !done)
     return tl::unexpected(done.error());
   if (options.rate_hz) mapping.rate_hz = options.rate_hz;
   if (mapping.rate_hz && mapping[sysid::Role::time].given())
@@ -115,6 +117,10 @@ tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& option
   mapping.skip_bad_lines = mapping.skip_bad_lines || options.skip_bad_lines;
   if (options.from_s) mapping.from_s = *options.from_s;
   if (options.to_s) mapping.to_s = *options.to_s;
+  if (mapping.from_s > mapping.to_s)
+    return tl::unexpected("the start (from-s, " + significant(mapping.from_s) +
+                          " s) is after the end (to-s, " + significant(mapping.to_s) +
+                          " s); the start must be before the end");
   return mapping;
 }
 

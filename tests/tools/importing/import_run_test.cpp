@@ -31,6 +31,34 @@ TEST(ImportOptions, OptionsOverrideTheExistingMapping) {
   EXPECT_EQ(mapping->missing, std::vector<std::string>{"lost"});
 }
 
+TEST(ImportOptions, AnErrorDistinguishesRoleAndValue) {
+  const auto error_of = [](const ImportOptions& options) {
+    const auto mapping = mapping_of(options, {});
+    return mapping ? std::string("no error") : mapping.error();
+  };
+  ImportOptions options;
+  for (const char* word : {"displacement=abc", "displacement=0", "displacement=nan"}) {
+    options.scales = {word};
+    EXPECT_EQ(error_of(options),
+              std::string("--scale ") + word + ": the value of displacement must be a number other than 0");
+  }
+  options.scales = {"displacment=2"};
+  EXPECT_NE(error_of(options).find("ROLE=VALUE is expected; roles are time"), std::string::npos);
+  options = {};
+  options.zeros = {"displacement=frist"};
+  EXPECT_EQ(error_of(options),
+            "--zero displacement=frist: the value of displacement must be a number or the word first");
+}
+
+TEST(ImportOptions, TheStartIsBeforeTheEnd) {
+  ImportOptions options;
+  options.from_s = 20, options.to_s = 10;
+  const auto mapping = mapping_of(options, {});
+  ASSERT_FALSE(mapping);
+  EXPECT_EQ(mapping.error(),
+            "the start (from-s, 20 s) is after the end (to-s, 10 s); the start must be before the end");
+}
+
 TEST(ImportTargets, OneInputBecomesAFileAndSeveralBecomeAFolder) {
   EXPECT_EQ(*import_targets({"a/day.csv"}, "log.csv"), std::vector<std::string>{"log.csv"});
   EXPECT_EQ(*import_targets({"a/day.csv.gz", "b/run.mat"}, "logs/"),
