@@ -95,12 +95,18 @@ class ModelReader {
     model.name = top.text("name");
     model.source = top.text("source");
     model.output_unit = read_output_unit(top);
+    bool is_actuator_read = false;
     for (const Station station : stations) {
       const bool required = station == Station::actuator;
+      const std::size_t before = problems_.size();
       for (const Node* item : top.sequence(name_of(station), required)) read_block(*item, station, model);
+      if (required) is_actuator_read = problems_.size() == before;
     }
+    const Node* const actuator = top.child(name_of(Station::actuator), false);
     top.finish();
-    if (!has_element_ && document_.complete) {
+    // If the actuator itself has a problem, a message about a missing element would only repeat this problem.
+    if (!has_element_ && document_.complete && is_actuator_read && actuator != nullptr &&
+        !actuator->refused) {
       top_problem("the actuator has no element that turns pressure into displacement",
                   "for example bouc_wen or kelvin_voigt is such an element");
     }

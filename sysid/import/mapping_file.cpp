@@ -92,7 +92,7 @@ class MappingReader {
     if (map.good("columns") && column.columns.empty()) map.report("columns", "the list of columns is empty");
     column.unit = map.optional_text("unit").value_or("");
     column.scale = map.optional_number("scale", {-1e12, 1e12});
-    if (column.scale == 0.0) map.report("scale", "a scale must not be 0");
+    if (map.good("scale") && column.scale == 0.0) map.report("scale", "a scale must not be 0");
     const document::Node* zero = map.child("zero", false);
     if (zero != nullptr && zero->scalar == "first") {
       column.zero_first = true;

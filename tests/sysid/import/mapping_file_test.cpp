@@ -38,6 +38,12 @@ TEST(MappingFile, ErrorsStateTheLocation) {
   };
   const std::string good = "schema: 1\nrate_hz: 100\ncommand: {columns: [a]}\n";
   EXPECT_NE(refused(good).find("the mapping is incomplete"), std::string::npos);
+  const std::string scaled =
+      "schema: 1\nrate_hz: 100\ncommand: {columns: [a]}\ndisplacement: {columns: [b], scale: ";
+  EXPECT_NE(refused(scaled + "0}\n").find("a scale must not be 0"), std::string::npos);
+  const std::string no_number = refused(scaled + "hundred}\n");
+  EXPECT_NE(no_number.find("hundred"), std::string::npos) << no_number;
+  EXPECT_EQ(no_number.find("must not be 0"), std::string::npos) << no_number;
   EXPECT_NE(refused(good + "displacment: {columns: [b]}\n").find("m.yaml:4:1"), std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [], scale: 0}\n").find("m.yaml:4:"), std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [b], zero: last}\n").find("m.yaml:4:"),
