@@ -140,4 +140,32 @@ std::string finger_of(const TableColumn& column, const std::vector<std::string>&
   return {};
 }
 
+std::vector<std::string> columns_of_no_finger(const ForeignTable& table,
+                                              const std::vector<std::string>& fingers) {
+  const auto is_number = [](const std::string& token) {
+    return std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  };
+  // Returns the name without the number at one place, such as {"pd", "", "psi"}.
+  const auto without = [](std::vector<std::string> tokens, std::size_t place) {
+    tokens[place].clear();
+    return tokens;
+  };
+  std::set<std::vector<std::string>> of_fingers;
+  for (const TableColumn& column : table.columns) {
+    const std::vector<std::string> tokens = tokens_of(column.name);
+    const auto place = std::find(tokens.begin(), tokens.end(), finger_of(column, fingers));
+    if (place != tokens.end() && is_number(*place))
+      of_fingers.insert(without(tokens, static_cast<std::size_t>(place - tokens.begin())));
+  }
+  std::vector<std::string> names;
+  for (const TableColumn& column : table.columns) {
+    const std::vector<std::string> tokens = tokens_of(column.name);
+    bool found = false;
+    for (std::size_t i = 0; i < tokens.size(); ++i)
+      found = found || (is_number(tokens[i]) && of_fingers.count(without(tokens, i)) > 0);
+    if (found && finger_of(column, fingers).empty()) names.push_back(column.name);
+  }
+  return names;
+}
+
 }  // namespace softgrip::sysid

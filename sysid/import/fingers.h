@@ -28,4 +28,10 @@ inline constexpr std::size_t most_fingers = 16;
 /// Returns the name of the finger to which a column belongs; empty if the column belongs to all fingers.
 [[nodiscard]] std::string finger_of(const TableColumn& column, const std::vector<std::string>& fingers);
 
+/// Returns the names of the columns that belong to none of the fingers, but whose names differ from the name
+/// of a finger's column only in the number: "pd3_psi" if the fingers are 1 and 2 and "pd1_psi" exists. Such a
+/// column belongs to a finger without a displacement.
+[[nodiscard]] std::vector<std::string> columns_of_no_finger(const ForeignTable& table,
+                                                            const std::vector<std::string>& fingers);
+
 }  // namespace softgrip::sysid

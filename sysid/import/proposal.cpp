@@ -143,10 +143,11 @@ namespace {
 struct FingerChoice {
   std::vector<std::string> fingers;
   std::string meant;
+  std::vector<std::string> of_none;  ///< result of columns_of_no_finger()
 
   [[nodiscard]] bool offers(const TableColumn& column) const {
     const std::string of = finger_of(column, fingers);
-    return of.empty() || of == meant;
+    return of.empty() ? std::ranges::count(of_none, column.name) == 0 : of == meant;
   }
 };
 
@@ -179,14 +180,12 @@ std::vector<std::string> read_fingers(const ForeignTable& table, const std::vect
 }
 
 FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Proposal& proposal) {
-  FingerChoice choice{fingers_of(table), lower_case(given.channel)};
+  FingerChoice choice{fingers_of(table), lower_case(given.channel), {}};
+  choice.of_none = columns_of_no_finger(table, choice.fingers);
   const bool by_rows = table.channels.size() > (given.channel.empty() ? 1 : 0);
   if (by_rows) return {};
-  const auto known = [&](const std::string& name) {
-    return std::find(choice.fingers.begin(), choice.fingers.end(), name) != choice.fingers.end();
-  };
   const std::vector<std::string> said = given_fingers(table, given, choice.fingers);
-  if (!given.channel.empty() && !known(choice.meant)) {
+  if (!given.channel.empty() && std::ranges::count(choice.fingers, choice.meant) == 0) {
     const std::string name = "'" + document::shown(given.channel) + "'";
     proposal.questions.push_back(
         choice.fingers.size() > 1
@@ -214,7 +213,8 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
     if (choice.meant.empty() && !given.complete())
       proposal.questions.push_back(
           {"the columns belong to " + std::to_string(choice.fingers.size()) +
-               " fingers: " + quoted(choice.fingers),
+               " fingers: " + quoted(choice.fingers) +
+               (choice.of_none.empty() ? "" : "; no displacement belongs to " + quoted(choice.of_none)),
            "select one finger with --channel, or give --command and --displacement"});
   }
   return choice;

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "sysid/import/proposal.h"
+
 namespace softgrip::sysid::fingers_test {
 namespace {
 
@@ -45,6 +47,19 @@ TEST(Fingers, ColumnBelongsToOneFingerOrToAll) {
   const Names fingers{"left", "right"};
   EXPECT_EQ(finger_of(named({"Left.tip (mm)"}).columns[0], fingers), "left");
   EXPECT_EQ(finger_of(named({"time_s"}).columns[0], fingers), "");
+}
+
+TEST(Fingers, ColumnsWithTheNumberOfAnotherFingerBelongToNone) {
+  const ForeignTable table =
+      named({"time_s", "pd1_psi", "pd2_psi", "pd3_psi", "supply_psi", "enc1_mm", "enc2_mm"});
+  EXPECT_EQ(fingers_of(table), (Names{"1", "2"}));
+  EXPECT_EQ(columns_of_no_finger(table, {"1", "2"}), Names{"pd3_psi"});
+  EXPECT_EQ(columns_of_no_finger(table, {}), Names{});
+  const Proposal proposal = propose(table, {}, true);
+  EXPECT_FALSE(proposal.mapping[Role::command].given());
+  ASSERT_EQ(proposal.questions.size(), 1U);
+  EXPECT_EQ(proposal.questions.front().text,
+            "the columns belong to 2 fingers: '1', '2'; no displacement belongs to 'pd3_psi'");
 }
 
 TEST(Tokens, LettersDigitsAndCapitalsDivideAName) {
