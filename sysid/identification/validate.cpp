@@ -84,11 +84,14 @@ std::string verdict_of(const Validation& v) {
   }
   const std::string logs =
       v.scores.size() == 1 ? v.scores.front().name : std::to_string(v.scores.size()) + " logs";
+  const std::string share = significant(largest_percent(v), 2);
   const std::string size = v.scores.size() == 1 ? significant(highest, 3)
                                                 : significant(lowest, 3) + " to " + significant(highest, 3);
   return v.model.name + " predicts " + logs + " with an RMSE of " + size + " " +
-         std::string(model::name_of(v.model.output_unit)) + ", at most " +
-         significant(largest_percent(v), 2) + " % of the span of each log" + bound_text(v) + ".";
+         std::string(model::name_of(v.model.output_unit)) + ", " +
+         (v.scores.size() == 1 ? share + " % of the span of the log"
+                               : "at most " + share + " % of the span of each log") +
+         bound_text(v) + ".";
 }
 
 Page validate_page(const Validation& v, const std::vector<Log>& logs) {

@@ -34,7 +34,7 @@ std::string import_hint(const std::string& path) {
   // If the file has the columns of a log, give no hint. Its errors are already printed, and an import would
   // not correct them.
   const bool own = sysid::column_index(*table, "pressure_command_kpa") < table->columns.size();
-  return own ? std::string() : "the columns of " + path + ": " + begin + end + "\n";
+  return own ? std::string() : "To see the columns of " + path + ": " + begin + end + "\n";
 }
 
 }  // namespace softgrip::tools

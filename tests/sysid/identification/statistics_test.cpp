@@ -135,6 +135,19 @@ TEST(Validate, EstimatesTheOffsetOfLogsThatStartAtRest) {
   for (const Score& s : v.scores) EXPECT_NEAR(s.rmse_mm, 0.05, 0.002);
 }
 
+TEST(Validation, TheSentenceAboutOneLogNamesNoOtherLogs) {
+  const model::Model model = loaded("bench_twin");
+  const std::vector<Log> logs{simulated(model, model::SignalName::sp1, 50, 0.05, 1),
+                              simulated(model, model::SignalName::tp2, 50, 0.05, 2)};
+  Validation one = validate_logs(model, {logs.front()});
+  one.at_most_percent = 1e-6;
+  EXPECT_NE(verdict_of(one).find(" % of the span of the log: above the permitted 1e-06 %."),
+            std::string::npos)
+      << verdict_of(one);
+  EXPECT_EQ(verdict_of(one).find("at most"), std::string::npos) << verdict_of(one);
+  EXPECT_NE(verdict_of(validate_logs(model, logs)).find(" % of the span of each log."), std::string::npos);
+}
+
 TEST(Records, MissingPressuresAreFilledButReadingsAreNot) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 1);
   log.pressure_kpa = log.pressure_command_kpa;

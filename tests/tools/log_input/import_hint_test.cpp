@@ -23,7 +23,7 @@ TEST(ImportHint, ProposesAnImportCommandOrOneThatListsTheColumns) {
             path + " as a log: softgrip import '" + path +
                 "' --time t_ms --command set_psi --displacement x_mm --out 'day 1_log.csv'\n");
   EXPECT_EQ(hint_for("a,b,c"),
-            "the columns of " + path + ": softgrip import '" + path + "' --out 'day 1_log.csv'\n");
+            "To see the columns of " + path + ": softgrip import '" + path + "' --out 'day 1_log.csv'\n");
   EXPECT_EQ(import_hint(folder.string() + "/absent"), "");
   std::filesystem::remove_all(folder);
 }
