@@ -41,6 +41,10 @@ class Offline(bench.BenchTest):
         self.write("config/models/bad.yaml", "name: bad\nsource: x\nactuator:\n  - bouc_wenn: {}\n")
         bad = self.simulate("--input", "tp1", "--out", "a.csv", model="bad", expect=3)
         self.assertIn("bad.yaml:4:5", bad.stderr)
+        self.assertIn("1 error\n", bad.stderr, "no further error about the missing element")
+        self.write("config/models/bad.yaml", "name: bad\nsource: x\nactuator: []\n")
+        self.assertIn("the actuator has no element", self.simulate("--input", "tp1", "--out", "a.csv", model="bad",
+                                                                   expect=3).stderr)
         self.write("bad.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n1,x,0\n")
         self.assertIn("bad.csv:3:3", self.simulate("--input", "bad.csv", "--out", "a.csv", expect=3).stderr)
         self.assertFalse((self.folder / "a.csv").exists())
@@ -84,6 +88,9 @@ class Offline(bench.BenchTest):
             self.assertIn("softgripd --config", done.stderr)
         self.softgrip("nonsense", expect=2)
         self.softgrip(expect=2)
+        self.assertIn("did you mean `published`?", self.softgrip("study", "publishd", expect=2).stderr)
+        self.assertIn("'many' is not a whole number from 0 to 100000",
+                      self.softgrip("diagnose", "--nulls", "many", expect=2).stderr)
         self.assertIn("softgrip 0.", self.softgrip("--version").stdout)
 
     def test_the_emulator_rejects_invalid_options(self):
@@ -97,6 +104,7 @@ class Offline(bench.BenchTest):
         self.assertIn("--allow-network", refused(2, "--bind", "0.0.0.0", "--tcp", "0"))
         self.assertIn("7E1", refused(2, "--rtu", "line", "--format", "7E1"))
         refused(2, "--rtu", "line", "--tcp", "0")
+        self.assertIn("'70000' is not a whole number from 0 to 65535", refused(2, "--tcp", "70000"))
         refused(4, "--rtu", "absent/line")
         self.assertIn("stone", refused(2, "--object", "feather", "--tcp", "0"))
         self.assertIn("faults.yaml:2:", refused(3, "--tcp", "0", "--faults", self.write(

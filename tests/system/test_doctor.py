@@ -245,6 +245,8 @@ class Calibrate(bench.BenchTest):
         self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # standard input gives no answer to the question
         self.softgrip("calibrate", "--rig", rig, "--channel", "left", "--valve", expect=2)
         self.softgrip("calibrate", "--rig", rig, expect=2)  # the option --channel is missing
+        typo = self.softgrip("calibrate", "--rig", rig, "--channel", "lft", "--sensor", expect=2)
+        self.assertIn("the rig has no channel `lft`; give one of its channels with --channel: left, right", typo.stderr)
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
     QUICK = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.5", "--average-s", "0.3")

@@ -2,9 +2,12 @@
 // Provides the common code of subcommands: the creation of a subcommand, options that several commands share,
 // and checks of option values that CLI11 does not provide.
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -61,6 +64,20 @@ void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
   const auto check = [=](const std::string& text) {
     const auto value = to_number(text);
     return value && *value >= lower && *value <= upper ? std::string() : "'" + text + "' is not " + range;
+  };
+  return CLI::Validator(check, "");
+}
+
+/// Accepts a whole number between `lower` and `upper`, bounds included.
+[[nodiscard]] inline CLI::Validator whole_between(std::uint64_t lower, std::uint64_t upper) {
+  const auto check = [=](const std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc{} && end == text.data() + text.size();
+    return good && value >= lower && value <= upper
+               ? std::string()
+               : "'" + text + "' is not a whole number from " + std::to_string(lower) + " to " +
+                     std::to_string(upper);
   };
   return CLI::Validator(check, "");
 }

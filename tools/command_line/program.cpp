@@ -12,6 +12,7 @@
 #include "base/version.h"
 #include "document/problem.h"
 #include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 
 namespace softgrip::tools {
@@ -44,12 +45,21 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return near.empty() ? std::string() : "did you mean `" + near + "`?";
 }
 
+/// Returns the name of a command with the names of its parents: "softgrip study".
+std::string name_of(const CLI::App& command) {
+  const CLI::App* const parent = command.get_parent();
+  return parent == nullptr ? command.get_name() : name_of(*parent) + " " + command.get_name();
+}
+
 /// Returns the first word of the command line that should be a command but is unknown, or "".
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
-  if (command_names_of(program).empty() || !program.get_subcommands().empty()) return {};
+  const CLI::App& parent = innermost(program);
+  if (command_names_of(parent).empty()) return {};
+  bool after_parent = &parent == &program;
   for (int i = 1; i < argc; ++i) {
     std::string word = argv[i];
-    if (!word.starts_with('-')) return word;
+    if (after_parent && !word.starts_with('-')) return word;
+    after_parent = after_parent || word == parent.get_name();
   }
   return {};
 }
@@ -62,9 +72,10 @@ int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char
   if (error.get_name() == "RuntimeError") return error.get_exit_code();
   if (const std::string word = unknown_command(program, argc, argv);
       !word.empty() && error.get_exit_code() != 0) {
-    const std::string hint = did_you_mean(word, command_names_of(program));
+    const CLI::App& parent = innermost(program);
+    const std::string hint = did_you_mean(word, command_names_of(parent));
     std::fprintf(stderr, "%s: there is no command `%s`%s%s\nRun with --help for more information.\n",
-                 program.get_name().c_str(), document::shown(word).c_str(), hint.empty() ? "" : "; ",
+                 name_of(parent).c_str(), document::shown(word).c_str(), hint.empty() ? "" : "; ",
                  hint.c_str());
     return usage;
   }
@@ -102,8 +113,9 @@ void add_gateway_options(CLI::App& program, GatewayOptions& options, const std::
   options.config = configuration_path(file);
   program.add_option("--config", options.config, config_help)->capture_default_str();
   program.add_option("--socket", options.socket, socket_help);
-  program.add_option("--port", options.port,
-                     "TCP port; overrides the configuration file; 0 selects a free port");
+  program
+      .add_option("--port", options.port, "TCP port; overrides the configuration file; 0 selects a free port")
+      ->check(whole_between(0, 65535));
   add_others();
   program.add_flag("--check", options.check, "Check the configuration file, report its errors, and exit");
 }

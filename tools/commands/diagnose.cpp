@@ -263,6 +263,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->add_option("--nulls", options->diagnosis.null_campaigns,
                    "Number of simulated data sets without any cause, from which the p-value of the search is "
                    "computed (with 19, the smallest p-value is 0.05)")
+      ->check(whole_between(0, 100'000))
       ->capture_default_str();
   add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
   command->add_flag("--propose", options->consequences.experiment.always,

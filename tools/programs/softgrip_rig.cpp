@@ -30,8 +30,10 @@ void add_options(CLI::App& program, Options& options) {
       .add_option("--board", options.boards,
                   "Board map: a file, or a name in config/boards; give the option once for each module")
       ->capture_default_str();
-  auto* tcp = program.add_option("--tcp", options.port,
-                                 "TCP port; 0 selects a free port [1502, or the port in the rig file]");
+  auto* tcp = program
+                  .add_option("--tcp", options.port,
+                              "TCP port; 0 selects a free port [1502, or the port in the rig file]")
+                  ->check(whole_between(0, 65535));
   program
       .add_option("--rtu", options.rtu,
                   "Use Modbus RTU on this serial device; if the path does not exist, a pseudo-terminal is "

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/command_line/options.h"
+
 namespace softgrip::tools::usage_test {
 namespace {
 
@@ -20,6 +22,12 @@ Said said_of(std::vector<std::string> words) {
   bool flag = false;
   program.add_subcommand("status", "Now")->add_flag("--json", flag, "As JSON");
   program.add_subcommand("start", "Go");
+  CLI::App* const study = program.add_subcommand("study", "Study");
+  study->require_subcommand(1);
+  int seed = 0;
+  study->add_subcommand("published", "One")
+      ->add_option("--seed", seed, "Seed")
+      ->check(whole_between(0, 65535));
   words.insert(words.begin(), "tool");
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -51,6 +59,25 @@ TEST(Usage, SuggestsTheNearestOptionOfTheCommand) {
   EXPECT_NE(said.text.find("--jsno: did you mean `--json`?"), std::string::npos) << said.text;
   EXPECT_EQ(said_of({"start", "--jsno"}).text.find("--json"), std::string::npos)
       << "the command `start` has no option with this name";
+}
+
+TEST(Usage, SuggestsTheNearestCommandOfACommand) {
+  const Said said = said_of({"study", "publishd"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_NE(said.text.find("tool study: there is no command `publishd`; did you mean `published`?"),
+            std::string::npos)
+      << said.text;
+}
+
+TEST(Usage, AWrongWholeNumberStatesThePermittedRange) {
+  for (const char* text : {"many", "70000", "-1", "1.5", "65536"}) {
+    const Said said = said_of({"study", "published", "--seed", text});
+    EXPECT_EQ(said.code, 2);
+    EXPECT_NE(said.text.find("'" + std::string(text) + "' is not a whole number from 0 to 65535"),
+              std::string::npos)
+        << said.text;
+  }
+  EXPECT_EQ(said_of({"study", "published", "--seed", "65535"}).code, 0);
 }
 
 TEST(Usage, HelpIsNoError) {
