@@ -13,7 +13,6 @@
 #include <tl/expected.hpp>
 
 #include "base/text.h"
-#include "document/problem.h"
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
@@ -182,9 +181,8 @@ ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& result
 tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, const rig::RigFile& rig) {
   const auto channel = channel_of(rig, options.channel);
   if (!channel) {
-    const std::string wrong = options.channel.empty()
-                                  ? "the rig has several channels"
-                                  : "the rig has no channel `" + document::shown(options.channel) + "`";
+    const std::string wrong = options.channel.empty() ? "the rig has several channels"
+                                                      : "the rig has no channel `" + options.channel + "`";
     return tl::unexpected(
         fail(ExitCode::usage, wrong + "; give one of its channels with --channel: " + names_of(rig)));
   }
