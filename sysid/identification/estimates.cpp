@@ -32,8 +32,7 @@ Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
     e.note = "the value is at the bound of its range";
     return e;
   }
-  const auto i = static_cast<Eigen::Index>(index);
-  const double half_z = u.quantile * std::sqrt(std::max(u.covariance(i, i), 0.0));
+  const double half_z = u.quantile * u.deviation(index);
   const double lower = p.to_value(fit.z[index] - half_z);
   const double upper = p.to_value(fit.z[index] + half_z);
   e.ci95 = Interval{std::max(lower, p.lower), std::min(upper, p.upper)};
@@ -49,10 +48,10 @@ class Profile {
   Profile(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& u, double huber_mm,
           std::size_t index)
       : residuals_(residuals), z_(z), index_(index), huber_mm_(huber_mm) {
-    const auto i = static_cast<Eigen::Index>(index);
-    const double white = u.naive(i, i);
-    const double inflation = white > 0 ? std::max(1.0, u.covariance(i, i) / white) : 1;
-    step_ = std::sqrt(std::max(u.covariance(i, i), 1e-12));
+    const double white = u.white_variance(static_cast<Eigen::Index>(index));
+    const double deviation = u.deviation(index);
+    const double inflation = white > 0 ? std::max(1.0, deviation * deviation / white) : 1;
+    step_ = std::max(deviation, 1e-6);
     // The cost is half the sum of squares, so the threshold is half of sigma^2 q^2. Here, sigma is the
     // standard deviation of the noise, and q is the quantile of Student's t distribution instead of the
     // normal quantile.
@@ -186,7 +185,7 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
     bool moves = false;
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      if (u.covariance(i, i) <= 0) continue;
+      if (u.at_bound[at] || u.without_effect[at]) continue;
       std::vector<double> z = fit.z;
       const double step = 1e-4 * std::max(1.0, std::abs(z[at]));
       z[at] = fit.z[at] + step;
@@ -198,11 +197,16 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
     }
     e.free = moves;
     if (moves && std::isfinite(gradient.sum())) {
-      const double half = u.quantile * std::sqrt(std::max(gradient.dot(u.covariance * gradient), 0.0));
-      e.ci95 = positive ? Interval{e.value * std::exp(-half), e.value * std::exp(half)}
-                        : Interval{e.value - half, e.value + half};
-      e.identifiable = (e.ci95->upper - e.ci95->lower) / 2 <=
-                       narrow_share * std::max(std::abs(e.value), combination.scale);
+      const double half = u.quantile * (u.root.transpose() * gradient).norm();
+      const Interval interval = positive ? Interval{e.value * std::exp(-half), e.value * std::exp(half)}
+                                         : Interval{e.value - half, e.value + half};
+      if (std::isfinite(interval.upper)) {
+        e.ci95 = interval;
+        e.identifiable = (interval.upper - interval.lower) / 2 <=
+                         narrow_share * std::max(std::abs(e.value), combination.scale);
+      } else {
+        e.note = "these logs do not determine this quantity";
+      }
     } else {
       e.note = "this quantity depends only on parameters that are fixed or at a bound of their range";
     }

@@ -5,11 +5,11 @@
 #include <limits>
 #include <numeric>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include "base/statistics.h"
-#include "sysid/fitting/bounded_solve.h"
 #include "sysid/fitting/jacobian.h"
 #include "sysid/limits/limits.h"
 
@@ -19,15 +19,46 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Computes products of the noise covariance C and the Jacobian J for each record. If A is the whitening
-/// filter of the autoregressive model, then C = s^2 (A'A)^-1. Therefore C J is s^2 times J after two passes
-/// of the filter 1/A, first backwards and then forwards in time.
+/// Coordinates in which the least-squares problem is well conditioned. With J the Jacobian and B the rows of
+/// J that have a curvature, the singular value decomposition is B S = U D V', where S scales each column to a
+/// length of 1. The coordinates y are given by z = T y with T = S V D^-1, so that (B'B)^-1 = T T'. The
+/// products J'J are never formed, because their rounding errors are larger than the information about a
+/// direction that the data hardly determine.
+struct Coordinates {
+  MatrixXd to_z;             ///< T, for the parameters that were kept
+  std::vector<bool> unseen;  ///< per coordinate, true: a change along it changes no residual measurably
+};
+
+Coordinates coordinates_of(const MatrixXd& bread) {
+  // A smaller singular value cannot be distinguished from the rounding errors of the simulation. The smallest
+  // value limits the standard deviation of such a direction to a finite, but very large, number.
+  constexpr double resolution = 1e-10;
+  const Eigen::VectorXd scale = bread.colwise().norm().transpose().cwiseMax(1e-150).cwiseInverse();
+  MatrixXd scaled = MatrixXd::Zero(std::max(bread.rows(), bread.cols()), bread.cols());
+  scaled.topRows(bread.rows()) = bread * scale.asDiagonal();
+  const MatrixXd upper =
+      Eigen::HouseholderQR<MatrixXd>(scaled).matrixQR().topRows(scaled.cols()).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<MatrixXd> svd(upper, Eigen::ComputeFullV);
+  const double smallest = std::max(resolution * svd.singularValues()(0), 1e-300);
+  Coordinates c{scale.asDiagonal() * svd.matrixV(), {}};
+  for (Index k = 0; k < c.to_z.cols(); ++k) {
+    const double size = svd.singularValues()(k);
+    c.unseen.push_back(!(size > smallest));
+    c.to_z.col(k) /= std::max(size, smallest);
+  }
+  return c;
+}
+
+/// Computes products of the noise covariance C and the Jacobian W for each record. W contains the derivatives
+/// of the residuals with respect to the coordinates y. If A is the whitening filter of the autoregressive
+/// model, then C = s^2 (A'A)^-1. Therefore C W is s^2 times W after two passes of the filter 1/A, first
+/// backwards and then forwards in time.
 class CorrelatedNoise {
  public:
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
-  /// Returns the product J' C J of the Jacobian J and the noise covariance C.
+  /// Returns the covariance W' C W of the estimates in the coordinates y.
   [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
     MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
     for_each_record([&](Index first, Index count) {
@@ -38,23 +69,19 @@ class CorrelatedNoise {
   }
 
   /// Increases the autocovariances of the residuals by the part of the noise that the fit has absorbed. With
-  /// the noise covariance C, the covariance of the residuals is (I - H) C (I - H), where H = J (J'J)^-1 J'
-  /// and J is the Jacobian.
-  void give_back(const NoiseModel& noise, const MatrixXd& inverse, const MatrixXd& meat,
-                 Autocovariance& covariance) const {
+  /// the noise covariance C, the covariance of the residuals is (I - H) C (I - H), where H = W W'.
+  void give_back(const NoiseModel& noise, const MatrixXd& meat, Autocovariance& covariance) const {
     const double s2 = noise.innovation_mm * noise.innovation_mm;
-    const MatrixXd both = inverse * meat * inverse;
     for_each_record([&](Index first, Index count) {
-      const auto j = jacobian_.middleRows(first, count);
-      const Jacobian cj = s2 * forwards(backwards(j, noise), noise);
-      const Jacobian jm = j * inverse;
-      const Jacobian jk = j * both;
+      const auto w = jacobian_.middleRows(first, count);
+      const Jacobian cw = s2 * forwards(backwards(w, noise), noise);
+      const Jacobian wm = w * meat;
       for (std::size_t lag = 0; lag < covariance.lags.size(); ++lag) {
         const Index n = count - static_cast<Index>(lag);
         if (n <= 0) break;
-        const double taken = jm.topRows(n).cwiseProduct(cj.bottomRows(n)).sum() +
-                             cj.topRows(n).cwiseProduct(jm.bottomRows(n)).sum() -
-                             jk.topRows(n).cwiseProduct(j.bottomRows(n)).sum();
+        const double taken = w.topRows(n).cwiseProduct(cw.bottomRows(n)).sum() +
+                             cw.topRows(n).cwiseProduct(w.bottomRows(n)).sum() -
+                             wm.topRows(n).cwiseProduct(w.bottomRows(n)).sum();
         covariance.lags[lag] += taken / static_cast<double>(covariance.samples);
       }
     });
@@ -94,26 +121,31 @@ class CorrelatedNoise {
   const std::vector<std::size_t>& rows_;
 };
 
-void scatter(const MatrixXd& part, const std::vector<Index>& keep, MatrixXd& whole) {
-  for (std::size_t i = 0; i < keep.size(); ++i) {
-    for (std::size_t j = 0; j < keep.size(); ++j) {
-      whole(keep[i], keep[j]) = part(static_cast<Index>(i), static_cast<Index>(j));
-    }
+/// Returns a square root of the covariance of the estimates in the coordinates y. The covariance is the root
+/// times its transpose, so that the variance of no combination of parameters can be negative or zero.
+MatrixXd root_of(MatrixXd meat, const Coordinates& coordinates, const NoiseModel& noise) {
+  for (std::size_t k = 0; k < coordinates.unseen.size(); ++k) {
+    if (!coordinates.unseen[k]) continue;
+    // A variance of 0 would mean that the data determine the coordinate exactly.
+    const auto at = static_cast<Index>(k);
+    meat(at, at) = noise.deviation_mm * noise.deviation_mm;
   }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(meat);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 /// Returns the directions in which the data determine the estimate poorly. In such a direction, the standard
 /// deviation of the estimate is at least 0.5 in the scale of the fit. This is half a typical change, or a
 /// factor of 1.6 on a logarithmic scale.
-std::vector<LooseDirection> loose_directions(const MatrixXd& covariance, const std::vector<Index>& keep,
+std::vector<LooseDirection> loose_directions(const MatrixXd& root, const std::vector<Index>& keep,
                                              const FitSpace& space) {
   constexpr double loose_from = 0.5;
   std::vector<LooseDirection> loose;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
-  for (Index i = covariance.rows(); i-- > 0;) {
-    const double deviation = std::sqrt(std::max(solver.eigenvalues()(i), 0.0));
+  const Eigen::JacobiSVD<MatrixXd> svd(root, Eigen::ComputeFullU);
+  for (Index i = 0; i < root.rows(); ++i) {
+    const double deviation = svd.singularValues()(i);
     if (deviation < loose_from) break;
-    const Eigen::VectorXd direction = solver.eigenvectors().col(i);
+    const Eigen::VectorXd direction = svd.matrixU().col(i);
     std::vector<Index> order(static_cast<std::size_t>(direction.size()));
     std::iota(order.begin(), order.end(), Index{0});
     std::sort(order.begin(), order.end(),
@@ -135,8 +167,8 @@ std::vector<LooseDirection> loose_directions(const MatrixXd& covariance, const s
 Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>& z, double huber_mm) {
   const auto n = static_cast<Index>(z.size());
   const std::size_t rows = residuals.count();
-  Uncertainty u{MatrixXd::Zero(n, n),
-                MatrixXd::Zero(n, n),
+  Uncertainty u{MatrixXd::Zero(n, 0),
+                Eigen::VectorXd::Zero(n),
                 std::vector<bool>(z.size()),
                 std::vector<bool>(z.size()),
                 {},
@@ -180,15 +212,17 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
     if (!u.without_effect[at] && !u.at_bound[at]) keep.push_back(i);
   }
   if (keep.empty()) return u;
-  const MatrixXd gram = kept(MatrixXd(bread.transpose() * bread), keep);
-  const Eigen::VectorXd scale = gram.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-13;
-  const MatrixXd inverse = scale.asDiagonal() *
-                           scaled.ldlt().solve(MatrixXd::Identity(gram.rows(), gram.cols())).eval() *
-                           scale.asDiagonal();
-  Jacobian columns(jacobian.rows(), static_cast<Index>(keep.size()));
-  for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = jacobian.col(keep[i]);
+  const auto columns_of = [&](const Jacobian& all) {
+    MatrixXd columns(all.rows(), static_cast<Index>(keep.size()));
+    for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(keep[i]);
+    return columns;
+  };
+  const Coordinates coordinates = coordinates_of(columns_of(bread));
+  Jacobian columns = columns_of(jacobian) * coordinates.to_z;
+  for (Index k = 0; k < columns.cols(); ++k) {
+    // The computed effect of an unseen coordinate consists of rounding errors.
+    if (coordinates.unseen[static_cast<std::size_t>(k)]) columns.col(k).setZero();
+  }
   const CorrelatedNoise correlated(columns, counts);
   MatrixXd meat = correlated.product(u.noise);
   // The residuals are smaller and less correlated than the noise, because the fit has absorbed part of the
@@ -197,15 +231,20 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   for (int pass = 0; pass < 2; ++pass) {
     Autocovariance whole = observed;
     whole.lags.resize(std::min(whole.lags.size(), u.noise.coefficients.size() + lags_beyond));
-    correlated.give_back(u.noise, inverse, meat, whole);
+    correlated.give_back(u.noise, meat, whole);
     u.noise = fit_noise(whole);
     meat = correlated.product(u.noise);
   }
-  const MatrixXd covariance = inverse * meat * inverse;
-  scatter(covariance, keep, u.covariance);
-  scatter(inverse * u.noise.deviation_mm * u.noise.deviation_mm, keep, u.naive);
+  const MatrixXd root = coordinates.to_z * root_of(meat, coordinates, u.noise);
+  u.root = MatrixXd::Zero(n, root.cols());
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    u.root.row(keep[i]) = root.row(row);
+    u.white_variance(keep[i]) =
+        u.noise.deviation_mm * u.noise.deviation_mm * coordinates.to_z.row(row).squaredNorm();
+  }
   u.quantile = t_quantile(u.noise.effective_samples - static_cast<double>(keep.size()));
-  u.loose = loose_directions(covariance, keep, residuals.space());
+  u.loose = loose_directions(root, keep, residuals.space());
   return u;
 }
 

@@ -52,14 +52,21 @@ struct LooseDirection {
 
 /// Covariance of the estimates in the coordinates z of the fit.
 struct Uncertainty {
-  Eigen::MatrixXd covariance;  ///< covariance of z; rows of parameters at a bound or without effect are zero
-  Eigen::MatrixXd naive;       ///< covariance of z under the assumption of white noise
+  /// Square root of the covariance of z: the covariance is root * root'. Rows of parameters at a bound or
+  /// without effect are zero. A direction that the data do not determine has a very large deviation.
+  Eigen::MatrixXd root;
+  Eigen::VectorXd white_variance;  ///< variance of each z under the assumption of white noise
   std::vector<bool> at_bound;
   std::vector<bool> without_effect;
   NoiseModel noise;
   double quantile =
       limits::deviate;  ///< 95 % quantile of Student's t distribution for the effective number of samples
   std::vector<LooseDirection> loose;
+
+  /// Returns the standard deviation of coordinate `index`; 0: the parameter is at a bound or without effect.
+  [[nodiscard]] double deviation(std::size_t index) const {
+    return root.row(static_cast<Eigen::Index>(index)).norm();
+  }
 };
 
 /// Computes the uncertainty of the estimates at the minimum `z`.

@@ -49,8 +49,7 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     const model::ParameterPlace place = model::place_of(model, free.flat_index);
     if (place.block != position) continue;
     const model::ParameterSpec& spec = model::catalogue()[model.blocks[position].type].spec(place.value);
-    const auto row = static_cast<Eigen::Index>(j);
-    const double deviation = std::sqrt(std::max(0.0, uncertainty.covariance(row, row)));
+    const double deviation = uncertainty.deviation(j);
     if (!std::isfinite(spec.neutral) || !(deviation > 0)) continue;
     const double half = uncertainty.quantile * deviation;
     const double distance = std::abs(z[j] - free.to_z(spec.neutral)) / deviation;

@@ -60,8 +60,7 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
       if (free.kind != FreeParameter::Kind::model || at.uncertainty.at_bound[j]) continue;
       const model::ParameterPlace place = model::place_of(model, free.flat_index);
       if (place.block != *position || place.value != i) continue;
-      const auto row = static_cast<Eigen::Index>(j);
-      const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
+      const double deviation = at.uncertainty.deviation(j);
       if (deviation == 0) continue;
       const double half = at.uncertainty.quantile * deviation;
       // A finite end of an interval is limited to the permitted range, because a delay, for example, is not
