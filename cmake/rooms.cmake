@@ -165,7 +165,7 @@ softgrip_room(tools/investigation
        sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
 # Computes the values of a report independently, to verify the report.
-softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/verification USES base document model model/file sysid/logs sysid/changes LIBRARIES nlohmann_json::nlohmann_json)
 # Studies of the paper, which `softgrip study` runs.
 softgrip_room(bench/studies
   USES base base/result model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting

@@ -6,9 +6,11 @@
 
 #include "base/numbers.h"
 #include "base/result/result.h"
+#include "model/file/model_file.h"
 #include "sysid/changes/change_page.h"
 #include "sysid/changes/change_result.h"
 #include "sysid/changes/next_steps.h"
+#include "sysid/pages/page.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/figures/figure_files.h"
@@ -75,8 +77,11 @@ ExitCode run_change(ChangeQuestion question) {
   }();
   if (!diagnosis) return fail(ExitCode::input_refused, diagnosis.error());
   result::Fields fields = sysid::fields_of(*diagnosis);
-  fields.emplace_back("made_of", result::Fields{{"call", question.call},
+  const result::Fields given{{"name", question.given.name}, {"hash", model::model_hash(question.given)}};
+  fields.emplace_back("made_of", result::Fields{{"software", sysid::software_and_version()},
+                                                {"call", question.call},
                                                 {"model", question.given.name},
+                                                {"given", given},
                                                 {"healthy", sources_of(question.healthy)},
                                                 {"data", sources_of(question.later)}});
   const std::string text = result::json_text(fields);

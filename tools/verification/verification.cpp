@@ -22,6 +22,7 @@
 #include "base/sha256.h"
 #include "document/problem.h"
 #include "model/file/model_file.h"
+#include "sysid/changes/baseline_folder.h"
 #include "sysid/logs/csv_text.h"
 
 namespace softgrip::tools {
@@ -71,6 +72,22 @@ std::string sha256_of(const std::string& path) {
   return bytes ? sha256(*bytes) : std::string();
 }
 
+/// Returns the hashes of the logs in the folder of a baseline, or "" if the folder contains no valid
+/// baseline.
+std::string baseline_hashes(const std::string& folder) {
+  const auto baseline = sysid::read_baseline(folder);
+  std::string joined;
+  if (!baseline) return joined;
+  for (const std::string& log : baseline->logs) joined += sha256_of(log) + " ";
+  return joined;
+}
+
+/// Returns the part of a report that describes how it was made. In the report of a change, this part has its
+/// own key.
+const Json& origin_of(const Json& report) {
+  return report.contains("made_of") ? json_member(report, "made_of") : report;
+}
+
 class Verifier {
  public:
   Verifier(const std::string& folder, const std::string& program, double tolerance)
@@ -101,8 +118,8 @@ class Verifier {
     if (!text) return missing(text.error());
     json_ = parse_json<Json>(*text);
     if (!json_.is_object()) return missing(path + " cannot be read as JSON");
-    result_.reported_by = json_text(json_, "software");
-    const Json& call = json_member(json_, "call");
+    result_.reported_by = json_text(made_of(), "software");
+    const Json& call = json_member(made_of(), "call");
     for (const Json& word : call) {
       if (!word.is_string()) return missing(path + ": the value of the key `call` is not a list of texts");
       call_.push_back(word.get<std::string>());
@@ -122,8 +139,11 @@ class Verifier {
   /// Returns the hash that the report states for a file. `option` is the command-line option whose value is
   /// this file.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
+    const Json& healthy = json_member(made_of(), "healthy");
+    if (option == "--baseline") return joined_hashes(healthy);
     for (const Json* logs :
-         {&json_member(json_, "logs"), &json_member(json_member(json_, "validation"), "logs")}) {
+         {&json_member(made_of(), "logs"), &json_member(json_member(json_, "validation"), "logs"), &healthy,
+          &json_member(made_of(), "data")}) {
       for (const Json& log : *logs) {
         if (json_text(log, "path") == path) return json_text(log, "sha256");
       }
@@ -131,13 +151,27 @@ class Verifier {
     if (option == "--gauge") return json_text(json_member(json_, "gauge"), "sha256");
     if (option == "--start") return json_text(json_member(json_, "start"), "hash");
     if (option == "--model")
-      return json_text(json_member(json_, json_.contains("given") ? "given" : "model"), "hash");
+      return json_text(json_member(made_of(), made_of().contains("given") ? "given" : "model"), "hash");
     return {};
+  }
+
+  /// Returns the hashes of all logs in the list, in the form of baseline_hashes().
+  static std::string joined_hashes(const Json& logs) {
+    std::string joined;
+    for (const Json& log : logs) joined += json_text(log, "sha256") + " ";
+    return joined;
+  }
+
+  /// Returns the current hash of the file or folder that is the value of an option.
+  static std::string hash_now(const std::string& option, const std::string& path) {
+    if (option == "--start" || option == "--model") return model_hash_of(path);
+    return option == "--baseline" ? baseline_hashes(path) : sha256_of(path);
   }
 
   /// Replaces the path of every input file in the command line by the path at which the file exists now.
   bool find_inputs() {
-    static const std::set<std::string> takes_files{"--data", "--validate", "--start", "--model", "--gauge"};
+    static const std::set<std::string> takes_files{"--data",  "--validate", "--start",   "--model",
+                                                   "--gauge", "--healthy",  "--baseline"};
     std::string option;
     for (std::size_t i = 1; i < call_.size(); ++i) {
       if (call_[i].starts_with("--")) {
@@ -156,7 +190,7 @@ class Verifier {
     std::string other;
     for (const fs::path& candidate : {fs::path(path), folder_ / name, folder_.parent_path() / name}) {
       if (!is_there(candidate)) continue;
-      const std::string hash = is_model ? model_hash_of(candidate.string()) : sha256_of(candidate.string());
+      const std::string hash = hash_now(option, candidate.string());
       if (hash == wanted && !hash.empty()) {
         path = candidate.string();
         return;
@@ -164,9 +198,10 @@ class Verifier {
       if (other.empty())
         other = candidate.string() + " differs from the file that the report used (" + hash + ")";
     }
-    missing(std::string(is_model              ? "model "
-                        : option == "--gauge" ? "gauge file "
-                                              : "log ") +
+    missing(std::string(is_model                 ? "model "
+                        : option == "--gauge"    ? "gauge file "
+                        : option == "--baseline" ? "baseline "
+                                                 : "log ") +
             path + ", " + (is_model ? "hash " : "sha256 ") + wanted + ": " +
             (other.empty() ? "not found" : other));
   }
@@ -183,7 +218,7 @@ class Verifier {
       missing("softgrip " + std::string(kind_->command) + " failed: exit code " + std::to_string(code));
       return;
     }
-    result_.recomputed_by = json_text(json, "software");
+    result_.recomputed_by = json_text(origin_of(json), "software");
     compare_json(kind_->json, json_, json, result_.comparison);
     compare_series(again);
     compare_model(again);
@@ -217,6 +252,8 @@ class Verifier {
       result_.comparison.compare("model.yaml", std::string("is missing or damaged"), "is there");
     }
   }
+
+  [[nodiscard]] const Json& made_of() const { return origin_of(json_); }
 
   fs::path folder_;
   std::string program_;

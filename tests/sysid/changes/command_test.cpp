@@ -1,5 +1,7 @@
 // Runs `softgrip baseline` and `softgrip diagnose` with the arguments that a user would give.
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +38,20 @@ TEST_F(ChangeCommand, DiagnoseFindsAgeingAgainstASavedBaseline) {
   EXPECT_NEAR(json["causes"][0]["size"]["value"].get<double>(), -5, 0.6);
   EXPECT_EQ(json["causes"][0]["next_steps"].size(), 2U);
   EXPECT_EQ(json["made_of"]["healthy"].size(), 2U);
+}
+
+TEST_F(ChangeCommand, AReportOfAChangeCanBeVerified) {
+  ASSERT_EQ(run("baseline --data h1.csv --model " + model + " --out base"), 0) << read("err.txt");
+  ASSERT_EQ(run("diagnose --baseline base --data later1.csv --out out"), 0) << read("err.txt");
+  EXPECT_EQ(run("report --verify out"), 0) << read("err.txt");
+  ASSERT_EQ(run("diagnose --model " + model + " --healthy h1.csv --data later1.csv --out pair"), 0);
+  EXPECT_EQ(run("report --verify pair"), 0) << read("err.txt");
+  write("h1.csv", read("h2.csv"));
+  EXPECT_EQ(run("report --verify pair"), 3);
+  EXPECT_NE(read("err.txt").find("log h1.csv, sha256"), std::string::npos) << read("err.txt");
+  std::filesystem::rename(folder_ / "base", folder_ / "moved");
+  EXPECT_EQ(run("report --verify out"), 3);
+  EXPECT_NE(read("err.txt").find("baseline base"), std::string::npos) << read("err.txt");
 }
 
 TEST_F(ChangeCommand, BaselineWithADifferentSecondRunExitsWith6) {
