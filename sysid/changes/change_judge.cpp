@@ -241,18 +241,25 @@ class Judge {
                                                         const Eigen::VectorXd& without,
                                                         const std::vector<FittedEffect>& found,
                                                         JudgedChange& judged) const {
+    // The table of tested causes shows the numbers of the first search. The reason of a later search
+    // therefore names the causes that the later search took for granted.
+    std::string given;
+    for (const FittedEffect& each : found) given += (given.empty() ? "with " : " and ") + each.effect.id;
     const auto reject = [&](const ScoredEffect& scored, std::string_view reason) {
       for (TriedCause& tried : judged.tried) {
-        if (tried.id == scored.fit.fitted.effect.id && tried.rejected.empty()) tried.rejected = reason;
+        if (tried.id == scored.fit.fitted.effect.id && tried.rejected.empty())
+          tried.rejected = (given.empty() ? given : given + ", ") + std::string(reason);
       }
     };
+    const std::string_view not_larger =
+        found.empty() ? "the probability that the error reduction exceeds the tolerance is below 95 %"
+                      : "the probability that a further error reduction exceeds the tolerance is below 95 %";
     std::erase_if(ranked, [&](const ScoredEffect& each) {
       const Comparison against_none =
           compare(paired_losses(readings, without, each.fit.white),
                   each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
       if (is_better(against_none)) return false;
-      reject(each,
-             "the error reduction in the later logs does not exceed the error reduction in healthy runs");
+      reject(each, not_larger);
       return true;
     });
     const Ties ties = ties_in(readings, options_.seed);
@@ -332,6 +339,9 @@ class Judge {
       if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) <
           limits::fewest_occurrences)
         judged.not_tested.emplace(effect.id, recording_for(effect.appears));
+    }
+    for (TriedCause& tried : judged.tried) {
+      if (judged.not_tested.contains(tried.id)) tried.rejected = reason_of(Veto::not_tested);
     }
   }
 

@@ -69,6 +69,20 @@ TEST_F(ChangeJudge, ANamedCauseHasNoReasonForARejection) {
   EXPECT_EQ(tried_and_accepted, accepted.size());
 }
 
+/// The table of tested causes shows the numbers of the first search. A reason from the second search
+/// therefore names the cause that the first search found.
+TEST_F(ChangeJudge, AReasonFromALaterSearchNamesTheCauseThatWasFoundFirst) {
+  const ChangeDiagnosis diagnosis = judged({.delay_s = 0.06, .valve_lag_s = 0.1});
+  ASSERT_EQ(diagnosis.causes.size(), 1U);
+  const JudgedChange& judged = diagnosis.readings.front();
+  const std::string given = "with " + diagnosis.causes.front().id + ", ";
+  std::size_t later = 0;
+  for (const TriedCause& tried : judged.tried) {
+    if (tried.rejected.starts_with(given)) ++later;
+  }
+  EXPECT_GT(later, 0U);
+}
+
 /// Returns logs with steps of the command. The pressure is the prediction of `base` with noise.
 std::vector<Log> logs_with_steps(const Base& base) {
   std::vector<Log> logs = test::logs_of({}, 5, true);

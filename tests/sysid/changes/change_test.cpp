@@ -134,8 +134,12 @@ TEST(Change, GainChangeIsReportedAsAgeingInPercent) {
   for (const TriedCause& tried : judged.tried) {
     if (!tried.rejected.empty()) ++rejected;
     EXPECT_FALSE(tried.id == "ageing" && !tried.rejected.empty()) << tried.rejected;
+    EXPECT_EQ(tried.rejected == "the data never meet the condition under which the effect occurs",
+              judged.not_tested.contains(tried.id))
+        << tried.id;
   }
   EXPECT_GT(rejected, 0U);
+  EXPECT_TRUE(judged.not_tested.contains("sensor_drift"));
   ASSERT_EQ(judged.runs.size(), judged.healthy_runs + judged.logs.size());
   for (std::size_t k = 0; k < judged.runs.size(); ++k) {
     const RunLeft& run = judged.runs[k];
