@@ -17,6 +17,7 @@
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/plausibility_warnings.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -70,6 +71,9 @@ std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>
 
 void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
           std::vector<std::string>& warnings) {
+  const auto among = repetition_warnings(later, healthy, "the healthy log",
+                                         "The comparison of a log with itself cannot show a change");
+  warnings.insert(warnings.end(), among.begin(), among.end());
   const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
   if (now_kpa > 1.05 * then_kpa)
     warnings.push_back(

@@ -59,7 +59,7 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
   for (std::size_t i = 0; i < v.records.size(); ++i) {
     v.scores.push_back(score_of(part, v.records[i], starts[i], v.records[i].reading_mm));
   }
-  v.warnings = plausibility_warnings_among(logs);
+  v.warnings = plausibility_warnings_among(logs, "The result lists the error of these samples twice");
   for (std::string& sentence : divergences_of(v.scores)) v.warnings.push_back(std::move(sentence));
   for (std::size_t i = 0; i < v.scores.size(); ++i) {
     if (std::string implausible = scale_warning(logs[i].name, v.scores[i].prediction_mm,

@@ -61,6 +61,9 @@ tl::expected<IdentifiedLogs, std::string> identify_logs(IdentifyQuestion questio
   all.logs = std::move(question.logs);
   all.validation_logs = std::move(question.validation);
   all.seed = question.options.seed;
+  std::vector<std::string> repetitions =
+      repetition_warnings(all.validation_logs, all.logs, "the fitted log",
+                          "The error on this log is therefore not an error on new data");
   std::vector<std::string> wrong_readings = take_out_wrong_readings(all.logs);
   append(wrong_readings, take_out_wrong_readings(all.validation_logs));
   const bool given = question.start.has_value();
@@ -86,6 +89,7 @@ tl::expected<IdentifiedLogs, std::string> identify_logs(IdentifyQuestion questio
     Validation validation = validate_logs(all.result.model, all.validation_logs, question.options.record);
     all.validation_records = std::move(validation.records);
     all.validation = std::move(validation.scores);
+    append(all.result.warnings, std::move(repetitions));
     append(all.result.warnings, std::move(validation.warnings));
   }
   return all;

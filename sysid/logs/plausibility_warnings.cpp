@@ -249,9 +249,27 @@ bool same_samples(const Log& a, const Log& b) {
          std::ranges::equal(drive_of(a), drive_of(b), same);
 }
 
+/// Appends a warning if `log` has the same samples as one of the logs in `earlier`.
+void warn_of_repetition(const Log& log, std::span<const Log> earlier, const std::string& kind,
+                        std::string_view repeated, std::vector<std::string>& warnings) {
+  const auto first =
+      std::ranges::find_if(earlier, [&](const Log& other) { return same_samples(other, log); });
+  if (first == earlier.end()) return;
+  warnings.push_back(log.name + ": the log contains the same samples as " + kind + first->name + ". " +
+                     std::string(repeated));
+}
+
 }  // namespace
 
-std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& logs) {
+std::vector<std::string> repetition_warnings(const std::vector<Log>& logs, const std::vector<Log>& earlier,
+                                             const std::string& kind, std::string_view repeated) {
+  std::vector<std::string> warnings;
+  for (const Log& log : logs) warn_of_repetition(log, earlier, kind + " ", repeated, warnings);
+  return warnings;
+}
+
+std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& logs,
+                                                     std::string_view repeated) {
   std::vector<std::string> warnings;
   std::vector<double> gains;
   std::vector<double> usual_gains;
@@ -262,13 +280,8 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
     gains.push_back(sums.correlation() > clear_correlation ? sums.slope() : 0);
     if (gains.back() != 0 && !shows_wrong_unit(log)) usual_gains.push_back(gains.back());
   }
-  for (std::size_t i = 1; i < logs.size(); ++i) {
-    const auto first = std::find_if(logs.begin(), logs.begin() + static_cast<std::ptrdiff_t>(i),
-                                    [&](const Log& log) { return same_samples(log, logs[i]); });
-    if (first != logs.begin() + static_cast<std::ptrdiff_t>(i))
-      warnings.push_back(logs[i].name + ": the log contains the same samples as " + first->name +
-                         ". Repeated samples make the confidence intervals too narrow");
-  }
+  for (std::size_t i = 1; i < logs.size(); ++i)
+    warn_of_repetition(logs[i], std::span(logs).first(i), "", repeated, warnings);
   // A log whose own values show a wrong unit must not cause a warning about the other logs.
   if (usual_gains.empty()) return warnings;
   const double usual = median_of(std::span(usual_gains));

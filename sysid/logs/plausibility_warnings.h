@@ -2,6 +2,7 @@
 // Warns about a log that can be read, but whose signs, scales or units are probably wrong.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sysid/logs/log.h"
@@ -27,10 +28,24 @@ enum class ReadingSign { kept, reversed };
                                                              const PressureColumn& column = {},
                                                              ReadingSign sign = ReadingSign::kept);
 
+/// The effect of repeated samples on a result with confidence intervals.
+inline constexpr std::string_view repeated_in_fit =
+    "Repeated samples make the confidence intervals too narrow";
+
 /// Returns the warnings about each log. If there are several logs, each warning begins with the name of the
 /// log. Also reports logs that repeat the samples of an earlier log, and logs whose motion differs from the
 /// motion of the other logs by the ratio of two units.
-[[nodiscard]] std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& logs);
+/// @param repeated  sentence without a full stop: the effect of repeated samples on the result.
+[[nodiscard]] std::vector<std::string> plausibility_warnings_among(
+    const std::vector<Log>& logs, std::string_view repeated = repeated_in_fit);
+
+/// Returns one warning for each log with the same samples as a log in `earlier`.
+/// @param kind  name of the logs in `earlier`, for example "the healthy log".
+/// @param repeated  sentence without a full stop: the effect of repeated samples on the result.
+[[nodiscard]] std::vector<std::string> repetition_warnings(const std::vector<Log>& logs,
+                                                           const std::vector<Log>& earlier,
+                                                           const std::string& kind,
+                                                           std::string_view repeated);
 
 /// Returns a sentence if the readings and the predictions of a model differ by the ratio of two units,
 /// otherwise "". NaN is a missing reading.

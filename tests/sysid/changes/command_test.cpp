@@ -54,6 +54,13 @@ TEST_F(ChangeCommand, AReportOfAChangeCanBeVerified) {
   EXPECT_NE(read("err.txt").find("baseline base"), std::string::npos) << read("err.txt");
 }
 
+TEST_F(ChangeCommand, ALogThatIsComparedWithItselfIsReported) {
+  ASSERT_EQ(run("diagnose --model " + model + " --healthy h1.csv --data h1.csv --out out"), 0);
+  const std::string sentence = "h1: the log contains the same samples as the healthy log h1";
+  EXPECT_NE(read("out.txt").find("warning: " + sentence), std::string::npos) << read("out.txt");
+  EXPECT_NE(read("out/diagnosis.json").find(sentence), std::string::npos);
+}
+
 TEST_F(ChangeCommand, BaselineWithADifferentSecondRunExitsWith6) {
   EXPECT_EQ(run("baseline --data h1.csv h2.csv --check later1.csv --model " + model + " --out base"), 6);
   EXPECT_NE(Json::parse(read("base/baseline.json"))["check"]["verdict"], "unchanged");

@@ -50,6 +50,17 @@ TEST(IdentifiedLogs, ValidationLogsAreCleanedAndPredicted) {
   EXPECT_EQ(all->report({}).validation_logs, &all->validation_logs);
 }
 
+TEST(IdentifiedLogs, ValidationOnAFittedLogIsReported) {
+  IdentifyQuestion asked = question();
+  asked.validation = asked.logs;
+  const auto all = identify_logs(std::move(asked));
+  ASSERT_TRUE(all) << all.error();
+  const std::string sentence =
+      "log 1: the log contains the same samples as the fitted log log 1. The error on this log is therefore "
+      "not an error on new data";
+  EXPECT_EQ(std::ranges::count(all->result.warnings, sentence), 1);
+}
+
 TEST(IdentifiedLogs, BaseStructureIsUsedWithoutAStartModel) {
   IdentifyQuestion asked = question();
   asked.start.reset();

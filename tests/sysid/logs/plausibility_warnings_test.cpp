@@ -178,7 +178,12 @@ TEST(PlausibilityWarnings, DuplicateLogIsReported) {
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)),
             "b: the log contains the same samples as a. Repeated samples make the confidence intervals too "
             "narrow\n");
+  EXPECT_EQ(all_of(plausibility_warnings_among(logs, "They count twice")),
+            "b: the log contains the same samples as a. They count twice\n");
+  EXPECT_EQ(all_of(repetition_warnings({logs[1]}, {logs[0]}, "the healthy log", "No change is visible")),
+            "b: the log contains the same samples as the healthy log a. No change is visible\n");
   logs[1].displacement_mm[4] += 0.001;
+  EXPECT_EQ(all_of(repetition_warnings({logs[1]}, {logs[0]}, "the healthy log", "No change is visible")), "");
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
 }
 
