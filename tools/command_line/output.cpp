@@ -27,10 +27,28 @@ std::vector<std::string> files_of(const std::string& input) {
   return {input + "/run.csv", input + "/run.json"};
 }
 
+/// Returns the file that occupies the path of a folder in which `output` would be written, or "".
+std::string file_instead_of_folder(const std::string& output) {
+  std::error_code error;
+  for (fs::path folder = fs::path(output).parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    const fs::file_status status = fs::status(folder, error);
+    if (fs::is_directory(status) || folder == folder.root_path()) return {};
+    if (fs::exists(status)) return folder.string();
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<ExitCode> refuse_overwriting(const std::vector<std::string>& outputs,
                                            const std::vector<std::string>& inputs) {
+  for (const std::string& output : outputs) {
+    const std::string file = output == "-" ? "" : file_instead_of_folder(output);
+    if (file.empty()) continue;
+    if (const auto code = refuse_overwriting({file}, inputs)) return code;
+    return fail(ExitCode::io,
+                "cannot write into " + file + ": it is a file, not a folder. Name another folder");
+  }
   for (const std::string& input : inputs) {
     for (const std::string& file : files_of(input)) {
       for (const std::string& output : outputs) {
@@ -47,6 +65,10 @@ std::vector<std::string> files_in(const std::string& folder, const std::vector<s
   std::vector<std::string> found;
   std::error_code error;
   if (folder.empty()) return found;
+  if (!is_folder(folder)) {
+    for (const std::string& pattern : patterns) found.push_back((fs::path(folder) / pattern).string());
+    return found;
+  }
   fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     if (entry.depth() > 0) entry.disable_recursion_pending();

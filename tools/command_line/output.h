@@ -24,13 +24,15 @@ namespace softgrip::tools {
 
 /// Returns ExitCode::usage and prints a sentence if one of `outputs` is the same file as one of `inputs`. Two
 /// paths are the same file if device and inode are equal after links are resolved. An input that is the
-/// folder of a recording represents its run.csv and run.json. Empty paths and "-" never match. Call this
-/// function before any computation.
+/// folder of a recording represents its run.csv and run.json. Empty paths and "-" never match. If the folder
+/// of an output is an existing file, returns ExitCode::usage if this file is an input, otherwise
+/// ExitCode::io. Call this function before any computation.
 [[nodiscard]] std::optional<ExitCode> refuse_overwriting(const std::vector<std::string>& outputs,
                                                          const std::vector<std::string>& inputs);
 
 /// Returns the files that a command can replace in its output folder: files in the folder and its subfolders
-/// whose names match one of the patterns. In a pattern, `*` represents any characters. For the folder "", the
+/// whose names match one of the patterns. In a pattern, `*` represents any characters. If `folder` does not
+/// exist or is a file, returns the paths that the patterns would have in `folder`. For the folder "", the
 /// result is empty.
 [[nodiscard]] std::vector<std::string> files_in(const std::string& folder,
                                                 const std::vector<std::string>& patterns);

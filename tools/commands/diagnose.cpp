@@ -178,7 +178,7 @@ std::optional<ExitCode> refuse_own_inputs(const DiagnoseOptions& options) {
   inputs.insert(inputs.end(), options.healthy.begin(), options.healthy.end());
   inputs.insert(inputs.end(), {options.model, options.gauge});
   if (!options.baseline.empty()) inputs.push_back(options.baseline + "/baseline.json");
-  return refuse_overwriting(replaced_by_report(options.out, options.figures, diagnosis_files()), inputs);
+  return refuse_report(options.out, options.figures, diagnosis_files(), inputs);
 }
 
 ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call) {

@@ -137,8 +137,7 @@ ExitCode run(const IdentifyOptions& chosen, const std::vector<std::string>& call
   std::vector<std::string> inputs = options.data;
   inputs.insert(inputs.end(), options.validate.begin(), options.validate.end());
   inputs.push_back(options.start);
-  if (const auto code = refuse_overwriting(
-          replaced_by_report(options.out, options.figures, {"model.yaml", "identify.json"}), inputs))
+  if (const auto code = refuse_report(options.out, options.figures, {"model.yaml", "identify.json"}, inputs))
     return *code;
   LogInput fitted = options.logs;
   fitted.begins_at_measured_pressure = question_of(options).has_value();

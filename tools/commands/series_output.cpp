@@ -1,12 +1,14 @@
 #include "tools/commands/series_output.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <utility>
 
 #include "base/files.h"
 #include "sysid/fitting/trajectory.h"
+#include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
 
 namespace softgrip::tools {
@@ -43,13 +45,23 @@ std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
   return all;
 }
 
-std::vector<std::string> replaced_by_report(const std::string& out, const std::string& figures,
-                                            std::vector<std::string> names) {
+std::optional<ExitCode> refuse_report(const std::string& out, const std::string& figures,
+                                      std::vector<std::string> names,
+                                      const std::vector<std::string>& inputs) {
   names.emplace_back("report.html");
   names.emplace_back("*/series.csv");
   std::vector<std::string> files = files_in(out, names);
   for (std::string& file : files_in(figures, {"figure-*"})) files.push_back(std::move(file));
-  return files;
+  if (const auto code = refuse_overwriting(files, inputs)) return code;
+  for (const char* result : {"identify.json", "validate.json", "diagnosis.json"}) {
+    const std::string path = (std::filesystem::path(out) / result).string();
+    std::error_code error;
+    if (out.empty() || std::ranges::count(names, result) > 0 || !std::filesystem::exists(path, error))
+      continue;
+    return fail(ExitCode::state_refused,
+                path + " already exists: its report.html would be replaced. Name another folder with --out");
+  }
+  return std::nullopt;
 }
 
 void add_figures_option(CLI::App& command, std::string& folder) {

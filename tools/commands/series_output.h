@@ -32,10 +32,15 @@ namespace softgrip::tools {
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
                                                       const std::vector<sysid::Log>& logs);
 
-/// Returns the files in the folders of --out and --figures that a report, its series and its figures would
-/// replace. Pass the result to refuse_overwriting().
-[[nodiscard]] std::vector<std::string> replaced_by_report(const std::string& out, const std::string& figures,
-                                                          std::vector<std::string> names);
+/// Checks the folders of --out and --figures before a command computes a report, its series and its figures.
+/// Prints a sentence and returns an exit code in two cases: a file of the report is an input, or cannot be
+/// written (refuse_overwriting()); or the folder of --out contains the result of another command
+/// (ExitCode::state_refused).
+/// @param names  patterns of the files that the command writes, in addition to the report and the series.
+/// They include the JSON file with the result of the command.
+[[nodiscard]] std::optional<ExitCode> refuse_report(const std::string& out, const std::string& figures,
+                                                    std::vector<std::string> names,
+                                                    const std::vector<std::string>& inputs);
 
 /// Adds --figures DIR to a command that writes a report. write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);

@@ -67,9 +67,7 @@ void print_summary(const sysid::Validation& v) {
 ExitCode run(const ValidateOptions& options, const std::vector<std::string>& call) {
   std::vector<std::string> inputs = options.data;
   inputs.push_back(options.model);
-  if (const auto code =
-          refuse_overwriting(replaced_by_report(options.out, options.figures, {"validate.json"}), inputs))
-    return *code;
+  if (const auto code = refuse_report(options.out, options.figures, {"validate.json"}, inputs)) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
   auto logs = read_logs(options.data, options.logs, unit_of(*model));

@@ -294,6 +294,36 @@ TEST_F(Command, ABadLogIsRefusedAndNothingWritten) {
   EXPECT_FALSE(fs::exists(folder_ / "result"));
 }
 
+TEST_F(Command, UnusableOutputFolderIsReportedBeforeTheComputation) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  write("model.yaml", model::to_yaml(loaded("zhang2025")));
+  write("notes.txt", "other data\n");
+  const std::string data = " --data tp1.csv --out ";
+  for (const std::string command :
+       {"identify", "validate --model model.yaml", "diagnose --model model.yaml",
+        "diagnose --model model.yaml --healthy tp1.csv", "baseline --model model.yaml"}) {
+    EXPECT_EQ(run(command + data + "tp1.csv"), 2) << command;
+    EXPECT_NE(read("err.txt").find("tp1.csv is an input of this command"), std::string::npos)
+        << read("err.txt");
+    EXPECT_EQ(run(command + data + "notes.txt/sub"), 4) << command;
+    EXPECT_EQ(run(command + data + "notes.txt"), 4) << command;
+    EXPECT_EQ(read("err.txt"),
+              "softgrip: cannot write into notes.txt: it is a file, not a folder. Name another folder\n");
+    EXPECT_EQ(read("out.txt"), "");
+  }
+}
+
+TEST_F(Command, ResultOfAnotherCommandIsNotReplaced) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  ASSERT_EQ(run("identify --starts 1 --data tp1.csv --out id"), 0) << read("err.txt");
+  const std::string page = read("id/report.html");
+  EXPECT_EQ(run("validate --model id/model.yaml --data tp1.csv --out id"), 5);
+  EXPECT_NE(read("err.txt").find("id/identify.json already exists"), std::string::npos) << read("err.txt");
+  EXPECT_EQ(read("id/report.html"), page);
+  EXPECT_FALSE(fs::exists(folder_ / "id/validate.json"));
+  EXPECT_EQ(run("identify --starts 1 --data tp1.csv --out id"), 0) << "a command may replace its own result";
+}
+
 TEST_F(Command, RefusedInputsGiveTheMatchingExitCode) {
   write_log("tp1.csv", model::SignalName::tp1);
   EXPECT_EQ(run("identify --data absent.csv --out result"), 4);
