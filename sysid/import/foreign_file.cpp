@@ -10,6 +10,7 @@
 #include "sysid/import/array_table.h"
 #include "sysid/import/mcap_table.h"
 #include "sysid/import/moments.h"
+#include "sysid/logs/log.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -128,9 +129,13 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
 
 std::optional<ForeignTable> read_foreign_file(const std::string& given, const TableOptions& options,
                                               document::Problems& problems, bool& unreadable) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const std::string path = fs::is_directory(given, error) ? (fs::path(given) / "run.csv").string() : given;
+  const auto log_file = log_file_of(given);
+  if (!log_file) {
+    unreadable = true;
+    problems.add({given, {1, 1}, {}, log_file.error(), {}});
+    return std::nullopt;
+  }
+  const std::string& path = *log_file;
   const auto file = open_regular(path);
   const auto bytes = file ? read_start(*file, largest_file_bytes + 1) : tl::unexpected(file.error());
   if (!bytes) {

@@ -27,6 +27,15 @@ void make_names_unique(std::vector<Log>& logs) {
 
 }  // namespace
 
+tl::expected<std::string, std::string> log_file_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return path;
+  const fs::path file = fs::path(path) / "run.csv";
+  if (fs::exists(file, error) || error) return file.string();
+  return tl::unexpected(path + " is not a recording, because this folder contains no run.csv");
+}
+
 Campaign read_campaign(const std::vector<std::string>& paths, document::Problems& problems,
                        const LogOptions& options) {
   namespace fs = std::filesystem;
@@ -35,13 +44,14 @@ Campaign read_campaign(const std::vector<std::string>& paths, document::Problems
   for (const std::string& given : paths) {
     std::error_code error;
     const bool folder = fs::is_directory(given, error);
-    const std::string path = folder ? (fs::path(given) / "run.csv").string() : given;
-    const auto text = read_file(path, options.bytes);
+    const auto file = log_file_of(given);
+    const auto text = file ? read_file(*file, options.bytes) : tl::unexpected(file.error());
     if (!text) {
-      problems.add({path, {1, 1}, {}, text.error(), {}});
+      problems.add({file.value_or(given), {1, 1}, {}, text.error(), {}});
       campaign.unreadable = true;
       continue;
     }
+    const std::string& path = *file;
     auto log = parse_log(path, *text, problems, agreed);
     if (!log) continue;
     if (!agreed.output_unit && options.need_readings) {

@@ -16,6 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "document/problem.h"
 #include "model/output_unit.h"
 
@@ -99,6 +101,10 @@ struct Campaign {
   /// not count.
   bool unreadable = false;
 };
+
+/// Returns the file of the log at `path`: run.csv if `path` is the folder of a recording, otherwise `path`.
+/// Returns an error sentence if `path` is a folder without run.csv.
+[[nodiscard]] tl::expected<std::string, std::string> log_file_of(const std::string& path);
 
 /// Reads logs in the given order. If a path is a folder, run.csv in this folder is read. All problems of all
 /// files are added to `problems`. A log with a problem is left out of the result.

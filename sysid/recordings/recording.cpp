@@ -56,7 +56,9 @@ void read_story(const std::string& path, Recording& recording) {
 
 tl::expected<Recording, std::string> read_recording(const std::string& path, document::Problems& problems) {
   const bool folder = is_folder(path);
-  const std::string csv = folder ? (fs::path(path) / "run.csv").string() : path;
+  const auto file = log_file_of(path);
+  if (!file) return tl::unexpected(file.error());
+  const std::string& csv = *file;
   const auto text = read_file(csv, longest_log);
   if (!text) return tl::unexpected(text.error());
 

@@ -28,11 +28,22 @@ std::vector<std::string> document_names(const std::filesystem::path& folder) {
   return names;
 }
 
+std::optional<ExitCode> refuse_folder(const std::string& path, const std::string& usual) {
+  if (!is_folder(path)) return std::nullopt;
+  const std::string inside = (std::filesystem::path(path) / usual).string();
+  std::error_code error;
+  const bool is_there = !usual.empty() && std::filesystem::exists(inside, error);
+  return fail(ExitCode::io, "cannot read " + path + ": it is a folder, and this option requires a file" +
+                                (is_there ? ". Name " + inside : ""));
+}
+
 tl::expected<model::Model, ExitCode> read_model(const std::string& path) {
+  if (const auto code = refuse_folder(path, "model.yaml")) return tl::unexpected(*code);
   return read_input(path, model::load_model);
 }
 
 tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path) {
+  if (const auto code = refuse_folder(path, "model.yaml")) return tl::unexpected(*code);
   return read_input(path, model::load_rig_model);
 }
 

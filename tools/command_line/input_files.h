@@ -2,6 +2,7 @@
 // Finds and reads the input files of commands: configuration and models.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,10 @@ namespace softgrip::tools {
 /// the folder is unreadable.
 [[nodiscard]] std::vector<std::string> document_names(const std::filesystem::path& folder);
 
+/// Returns nullopt if `path` is not a folder. Otherwise prints a sentence and returns ExitCode::io. If the
+/// folder contains a file `usual`, the sentence names this file.
+[[nodiscard]] std::optional<ExitCode> refuse_folder(const std::string& path, const std::string& usual = "");
+
 /// Returns the result of read(path, problems). If the file cannot be opened or is refused, prints the reason
 /// and returns the exit code.
 template <class Read>
@@ -31,6 +36,7 @@ auto read_input(const std::string& path, Read read)
     -> tl::expected<typename decltype(read(path, std::declval<document::Problems&>()))::value_type,
                     ExitCode> {
   if (const auto code = unreadable(path)) return tl::unexpected(*code);
+  if (const auto code = refuse_folder(path)) return tl::unexpected(*code);
   document::Problems problems;
   auto result = read(path, problems);
   if (!result) return tl::unexpected(refuse(problems));

@@ -324,6 +324,22 @@ TEST_F(Command, ResultOfAnotherCommandIsNotReplaced) {
   EXPECT_EQ(run("identify --starts 1 --data tp1.csv --out id"), 0) << "a command may replace its own result";
 }
 
+TEST_F(Command, FolderInsteadOfAFileIsRefusedWithTheFileInIt) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  write("id/model.yaml", model::to_yaml(loaded("zhang2025")));
+  EXPECT_EQ(run("validate --model id --data tp1.csv"), 4);
+  EXPECT_EQ(
+      read("err.txt"),
+      "softgrip: cannot read id: it is a folder, and this option requires a file. Name id/model.yaml\n");
+  for (const std::string command :
+       {"validate --model id/model.yaml --data id", "import id --yes --out x.csv", "plot id --out x.svg"}) {
+    EXPECT_EQ(run(command), 4) << command;
+    EXPECT_NE(read("err.txt").find("id is not a recording, because this folder contains no run.csv"),
+              std::string::npos)
+        << read("err.txt");
+  }
+}
+
 TEST_F(Command, RefusedInputsGiveTheMatchingExitCode) {
   write_log("tp1.csv", model::SignalName::tp1);
   EXPECT_EQ(run("identify --data absent.csv --out result"), 4);

@@ -391,6 +391,19 @@ TEST(Log, FolderIsReadAsARecordedRun) {
   EXPECT_EQ(problems.size(), 1U);
 }
 
+TEST(Log, FolderWithoutARunIsNoRecording) {
+  const std::string folder = (std::filesystem::path(testing::TempDir()) / "softgrip_log_test_none").string();
+  std::filesystem::create_directories(folder);
+  Problems problems;
+  const Campaign campaign = read_campaign({folder}, problems);
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(campaign.unreadable);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems.list().front().file, folder);
+  EXPECT_EQ(problems.list().front().message,
+            folder + " is not a recording, because this folder contains no run.csv");
+}
+
 TEST(Log, ClippingMayBeAllowed) {
   Log log = good_log();
   for (double& y : log.displacement_mm) y = std::min(y, 8.0);
