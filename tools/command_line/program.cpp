@@ -90,6 +90,20 @@ int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char
   return usage;
 }
 
+void refuse_options_as_values(CLI::App& program) {
+  for (CLI::Option* const option : program.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;
+    option->check(CLI::Validator(
+        [](const std::string& word) {
+          return word.starts_with("--")
+                     ? "the value is missing, because " + document::shown(word) + " is the name of an option"
+                     : std::string();
+        },
+        ""));
+  }
+  for (CLI::App* const command : program.get_subcommands({})) refuse_options_as_values(*command);
+}
+
 int run_server_program(const ServerProgram& program, int argc, char** argv) {
   try {
     CLI::App app{program.purpose, program.name};

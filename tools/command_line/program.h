@@ -24,6 +24,10 @@ namespace softgrip::tools {
 /// CLI::RuntimeError.
 [[nodiscard]] int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv);
 
+/// Makes every option of every command refuse a value that begins with "--". Such a value is the name of the
+/// next option, so the value of the option is missing. Call this function after all options were added.
+void refuse_options_as_values(CLI::App& program);
+
 /// Name, purpose and functions of a program.
 struct ServerProgram {
   std::string name;

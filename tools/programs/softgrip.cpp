@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
 #define SOFTGRIP_ADD(name) softgrip::tools::add_##name(program, outcome);
   SOFTGRIP_COMMANDS(SOFTGRIP_ADD)
 #undef SOFTGRIP_ADD
+  softgrip::tools::refuse_options_as_values(program);
 
   try {
     program.parse(argc, argv);

@@ -340,6 +340,15 @@ TEST_F(Command, FolderInsteadOfAFileIsRefusedWithTheFileInIt) {
   }
 }
 
+TEST_F(Command, OptionInPlaceOfAValueIsReported) {
+  EXPECT_EQ(run("diagnose --model model.yaml --data tp1.csv --healthy --out d"), 2);
+  EXPECT_NE(read("err.txt").find("--healthy: the value is missing, because --out is the name of an option"),
+            std::string::npos)
+      << read("err.txt");
+  EXPECT_EQ(run("identify --data --out d"), 2);
+  EXPECT_NE(read("err.txt").find("--data: the value is missing"), std::string::npos) << read("err.txt");
+}
+
 TEST_F(Command, RefusedInputsGiveTheMatchingExitCode) {
   write_log("tp1.csv", model::SignalName::tp1);
   EXPECT_EQ(run("identify --data absent.csv --out result"), 4);
