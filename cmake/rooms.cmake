@@ -78,7 +78,7 @@ target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::mati
 softgrip_room(sysid/pages USES base base/result model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification
-  USES base base/result model model/file sysid/limits sysid/logs sysid/pages sysid/fitting
+  USES base base/result document model model/file sysid/limits sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
 softgrip_room(sysid/structure
   USES base model sysid/limits sysid/logs sysid/fitting sysid/identification

@@ -10,6 +10,8 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "base/text.h"
+#include "document/problem.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/catalogue.h"
 #include "model/named.h"
@@ -34,13 +36,24 @@ struct FreeIndices {
   bool k0_kept = false;
 };
 
+/// Returns the error sentence for a parameter that the model does not have. The sentence contains the most
+/// similar parameter, or the list of all parameters if no parameter is similar.
+std::string unknown_parameter(const model::Model& model, const std::string& path) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i)
+    names.push_back(model::parameter_path(model, i));
+  const std::string near = document::nearest(path, names);
+  return "the model has no parameter '" + path + "'; " +
+         (near.empty() ? "its parameters are " + with_commas(names) : "did you mean '" + near + "'?");
+}
+
 tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
                                                     const IdentifyOptions& options) {
   std::array<std::set<std::size_t>, 2> indices;
   for (auto [list, into] : {std::pair(&options.fixed, &indices[0]), std::pair(&options.free, &indices[1])}) {
     for (const std::string& path : *list) {
       const auto index = model::find_path(model, path);
-      if (!index) return Failure("the model has no parameter '" + path + "'");
+      if (!index) return Failure(unknown_parameter(model, path));
       into->insert(*index);
     }
   }
