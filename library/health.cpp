@@ -69,7 +69,9 @@ FingerHealth finger_of(const sysid::health::JudgedFinger& judged) {
   return finger;
 }
 
-[[noreturn]] void refuse(const sysid::health::RefusedBaseline& baseline) {
+[[noreturn]] void refuse(const sysid::health::HealthRefusal& refusal) {
+  if (!refusal.notes.empty()) library::refuse(refusal.notes);
+  const sysid::health::RefusedBaseline& baseline = refusal.baselines.front();
   if (baseline.why.empty()) library::refuse(baseline.problems);
   throw FileError(baseline.why);
 }
@@ -94,7 +96,7 @@ Health health(const std::vector<std::string>& recordings, const std::string& bas
   }
   const auto found =
       library::cancellable(1, options.stop, [&] { return sysid::health::recorded_health(question); });
-  if (!found) refuse(found.error().front());
+  if (!found) refuse(found.error());
   if (found->fingers.empty()) {
     std::string reason = "no recording can be compared with the baseline " + baseline;
     if (!found->skipped.empty())

@@ -27,6 +27,7 @@ tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
   if (!json.is_object() || !json.contains("logs") || !json["logs"].is_array() || !json.contains("model"))
     return Failure(path + " was not written by softgrip baseline");
   Baseline baseline;
+  baseline.channel = json_text(json_member(json, "rig"), "channel");
   const auto known = [&](const Json& entry) -> tl::expected<std::string, std::string> {
     if (!entry.is_object() || !entry.value("file", Json()).is_string() ||
         !entry.value("sha256", Json()).is_string())

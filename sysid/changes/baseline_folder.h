@@ -16,6 +16,8 @@ struct Baseline {
   std::vector<std::string> second;  ///< paths of the logs of the second run, including the folder; empty:
                                     ///< there was no second run
   std::string model;                ///< path of model.yaml
+  std::string channel;              ///< channel of the rig on which the logs were recorded; empty: the logs
+                                    ///< come from files
   std::string gauge;                ///< path of gauge.csv; empty: the sensor was not checked
 };
 

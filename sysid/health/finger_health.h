@@ -30,6 +30,8 @@ struct Note {
   std::string date;    ///< date in UTC: "2026-11-03" (start of the day) or "2026-11-03T14:30:00Z"
   std::string finger;  ///< name of the finger; empty: the note applies to all fingers
   std::string action;  ///< maintenance action, in a few words
+  /// Location of the name of the finger in the file of the notes, without a message.
+  document::Problem finger_at = {};
 };
 
 /// Returns the notes in order of their dates. Returns nullopt if the text has problems, and adds all of them

@@ -131,7 +131,9 @@ Fields fields_of(const RecordedHealth& health, Nanoseconds now) {
       {"shared_changes", list_of(health.shared)},
       {"warnings", warnings_of(health)},
       {"skipped", list_of(health.skipped, [](const SkippedRun& one) -> Fields {
-         return {{"run", one.run}, {"why", one.why}};
+         Fields fields{{"run", one.run}, {"why", one.why}};
+         if (!one.finger.empty()) fields.emplace_back("finger", one.finger);
+         return fields;
        })}};
 }
 

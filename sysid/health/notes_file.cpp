@@ -29,7 +29,8 @@ std::optional<std::vector<Note>> read_notes(const std::string& path, std::string
   for (const document::Node* item : top.sequence("notes", true)) {
     document::MapReader reader(document, *item, problems, "a note");
     Note note{reader.text("date"), reader.optional_text("finger").value_or(""),
-              reader.text(reader.name_in_use("action", "mended"))};
+              reader.text(reader.name_in_use("action", "mended")),
+              document.problem(reader.where("finger"), {})};
     if (reader.good("date") && !looks_like(note.date, "0000-00-00") &&
         !looks_like(note.date, "0000-00-00T00:00:00Z"))
       reader.report("date", "this is not a date in UTC", "2026-11-03, or 2026-11-03T14:30:00Z");

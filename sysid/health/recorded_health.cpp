@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/files.h"
 #include "base/sha256.h"
+#include "base/text.h"
 #include "model/file/model_file.h"
 #include "sysid/changes/baseline_folder.h"
 #include "sysid/logs/command_before.h"
@@ -38,6 +40,24 @@ class Baselines {
   [[nodiscard]] std::string folder_of(const std::string& finger) const {
     const fs::path own = fs::path(folder_) / finger;
     return !finger.empty() && is_there(own / "baseline.json") ? own.string() : folder_;
+  }
+  /// Returns the names of the fingers that have an own baseline: the names of the folders in DIR.
+  [[nodiscard]] std::set<std::string> own() const {
+    std::set<std::string> fingers;
+    std::error_code unreadable;
+    for (const auto& entry : fs::directory_iterator(folder_, unreadable)) {
+      if (is_there(entry.path() / "baseline.json")) fingers.insert(entry.path().filename().string());
+    }
+    return fingers;
+  }
+  /// Returns the reason why DIR contains no baseline of any finger.
+  [[nodiscard]] std::optional<RefusedBaseline> missing() const {
+    if (!is_there(folder_)) return RefusedBaseline{folder_ + " does not exist", {}, true};
+    if (is_there(fs::path(folder_) / "baseline.json") || !own().empty()) return std::nullopt;
+    return RefusedBaseline{folder_ +
+                               " is not a baseline: neither this folder nor a folder in it contains "
+                               "baseline.json, which `softgrip baseline` writes",
+                           {}};
   }
   /// Returns the baselines that exist but are refused.
   [[nodiscard]] const std::vector<RefusedBaseline>& refused() const { return refused_; }
@@ -73,6 +93,52 @@ class Baselines {
   std::vector<RefusedBaseline> refused_;
 };
 
+/// Returns for each finger without a baseline one element, with its last recording.
+std::vector<SkippedRun> without_baseline(const std::vector<ScoredRun>& runs, Baselines& baselines) {
+  std::map<std::string, std::set<std::string>> recordings;
+  for (const ScoredRun& run : runs) {
+    if (baselines.of(run.finger) == nullptr) recordings[run.finger].insert(run.run);
+  }
+  std::vector<SkippedRun> skipped;
+  for (const auto& [finger, names] : recordings) {
+    const std::string count =
+        std::to_string(names.size()) + (names.size() == 1 ? " recording" : " recordings");
+    skipped.push_back(
+        {*names.rbegin(),
+         "there is no baseline of `" + finger + "`, so its readings in " + count + " are not used", finger});
+  }
+  return skipped;
+}
+
+std::vector<SkippedRun> empty_folders(const std::vector<std::string>& paths) {
+  std::vector<SkippedRun> skipped;
+  for (const std::string& path : paths) {
+    if (find_runs({path}).empty()) skipped.push_back({path, "the folder contains no recordings"});
+  }
+  return skipped;
+}
+
+/// Returns the problems of notes that name an unknown finger. Such a note would close no alarm.
+document::Problems unknown_fingers(const HealthQuestion& question, const std::vector<ScoredRun>& runs,
+                                   const Baselines& baselines) {
+  std::set<std::string> known = baselines.own();
+  for (const ScoredRun& run : runs) known.insert(run.finger);
+  if (const auto baseline = read_baseline(question.baseline); baseline && !baseline->channel.empty())
+    known.insert(baseline->channel);
+  const std::vector<std::string> names(known.begin(), known.end());
+  document::Problems problems;
+  for (const Note& note : question.notes) {
+    if (note.finger.empty() || known.contains(note.finger)) continue;
+    document::Problem problem = note.finger_at;
+    problem.message = "no recording and no baseline has a finger " + document::in_backticks(note.finger);
+    const std::string near = document::nearest(note.finger, names);
+    problem.hint = near.empty() ? "known fingers: " + with_commas(names)
+                                : "did you mean " + document::in_backticks(near) + "?";
+    problems.add(std::move(problem));
+  }
+  return problems;
+}
+
 void judge(const std::vector<ScoredRun>& runs, const HealthQuestion& question, Baselines& baselines,
            RecordedHealth& all) {
   std::map<std::string, std::vector<ScoredRun>> by_finger;
@@ -98,8 +164,9 @@ bool RecordedHealth::alarm() const {
                      [](const JudgedFinger& finger) { return finger.health.state == FingerState::alarm; });
 }
 
-tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(const HealthQuestion& question) {
+tl::expected<RecordedHealth, HealthRefusal> recorded_health(const HealthQuestion& question) {
   Baselines baselines(question.baseline);
+  if (auto missing = baselines.missing()) return tl::unexpected(HealthRefusal{{std::move(*missing)}, {}});
   const BaseOf base_of = [&](const std::string& finger) { return baselines.of(finger); };
   RecordedHealth all{question.baseline, question.options, {}, {}, {}, question.scores};
   if (!all.scores.empty() && all.scores.back() != '\n') all.scores += '\n';
@@ -110,12 +177,19 @@ tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(const
       question.progress("recording " + std::to_string(index) + " of " + std::to_string(count));
     };
   RunScores scores = score_runs(find_runs(question.recordings), base_of, runs, on_recording);
-  if (!baselines.refused().empty()) return tl::unexpected(baselines.refused());
+  if (!baselines.refused().empty()) return tl::unexpected(HealthRefusal{baselines.refused(), {}});
   for (const ScoredRun& scored : scores.runs) {
     all.scores += line_of(scored);
     runs.push_back(scored);
   }
-  all.skipped = std::move(scores.skipped);
+  if (!runs.empty()) {
+    if (document::Problems unknown = unknown_fingers(question, runs, baselines); !unknown.empty())
+      return tl::unexpected(HealthRefusal{{}, std::move(unknown)});
+  }
+  all.skipped = empty_folders(question.recordings);
+  all.skipped.insert(all.skipped.end(), scores.skipped.begin(), scores.skipped.end());
+  const std::vector<SkippedRun> incomplete = without_baseline(runs, baselines);
+  all.skipped.insert(all.skipped.end(), incomplete.begin(), incomplete.end());
   judge(current(runs, base_of), question, baselines, all);
   return all;
 }

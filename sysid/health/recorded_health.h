@@ -52,10 +52,16 @@ struct RefusedBaseline {
   bool unreadable = false;      ///< true: a file of the baseline cannot be opened
 };
 
-/// Scores the recordings whose scores are not in `question.scores`, and judges all fingers. The error
-/// contains at least one refused baseline.
-[[nodiscard]] tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(
-    const HealthQuestion& question);
+/// Inputs that recorded_health() refuses. `baselines` or `notes` is not empty.
+struct HealthRefusal {
+  std::vector<RefusedBaseline> baselines;
+  document::Problems notes;  ///< notes about a finger that is unknown
+};
+
+/// Scores the recordings whose scores are not in `question.scores`, and judges all fingers. The known fingers
+/// are those of the recordings, of the scores and of the baselines. `skipped` contains one element for each
+/// finger that has recordings but no baseline.
+[[nodiscard]] tl::expected<RecordedHealth, HealthRefusal> recorded_health(const HealthQuestion& question);
 
 /// Returns warnings about shared changes and about changes that are not attributed to a finger.
 [[nodiscard]] std::vector<std::string> warnings_of(const RecordedHealth& health);

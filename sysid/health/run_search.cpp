@@ -57,11 +57,18 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
                               "the recorder writes one recording per sequence)"});
     return;
   }
+  if (recording->channels.front().channel.empty()) {
+    scores.skipped.push_back(
+        {name,
+         "this is not a recording: the log has no column `channel`, so the finger is "
+         "unknown. Give the folder of a recording that softgripd or `softgrip run` wrote"});
+    return;
+  }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
     const FingerBase* const base = base_of(finger);
     if (base == nullptr) {
-      scores.skipped.push_back({name, "there is no baseline of `" + finger + "`"});
+      scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, {}, {}});
       continue;
     }
     const model::OutputUnit unit = recording->channels[c].output_unit;
@@ -114,8 +121,13 @@ std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf&
 RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
                      const std::vector<ScoredRun>& known, const OnRecording& on_recording) {
   std::set<std::pair<std::string, std::string>> stale;
-  for (const ScoredRun& run : known) stale.emplace(run.run, run.finger);
   std::set<std::string> done;
+  for (const ScoredRun& run : known) {
+    if (base_of(run.finger) == nullptr)
+      done.insert(run.run);
+    else
+      stale.emplace(run.run, run.finger);
+  }
   for (const ScoredRun& run : current(known, base_of)) {
     stale.erase({run.run, run.finger});
     done.insert(run.run);

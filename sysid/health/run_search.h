@@ -22,8 +22,10 @@ struct FingerBase {
 /// Returns the baseline of a finger; null if the finger has no baseline.
 using BaseOf = std::function<const FingerBase*(const std::string& finger)>;
 
+/// A recording that was not used, or the readings of one finger that were not used.
 struct SkippedRun {
   std::string run, why;
+  std::string finger = {};  ///< finger whose readings were not used; empty: the whole recording
 };
 
 /// Callback before each recording is read. @param index  index of this recording, from 1. @param count number
@@ -31,11 +33,14 @@ struct SkippedRun {
 using OnRecording = std::function<void(std::size_t index, std::size_t count)>;
 
 struct RunScores {
-  std::vector<ScoredRun> runs;  ///< one element for each finger of each run
+  /// One element for each finger of each run. Without a baseline of the finger, `baseline` and all indicators
+  /// are empty.
+  std::vector<ScoredRun> runs;
   std::vector<SkippedRun> skipped;
 };
 
-/// Scores each recording for which `known` contains no scores with the current baselines. An unusable or
+/// Scores each recording for which `known` contains no scores with the current baselines. A recording is read
+/// again if a finger without a baseline now has a baseline. An unusable or
 /// unfinished recording is added to `skipped`. If the computation is cancelled, it ends before the next
 /// recording.
 /// @param on_recording  may be empty

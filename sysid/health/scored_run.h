@@ -20,7 +20,8 @@ struct ScoredRun {
   std::string finger;      ///< name of the finger's channel
   std::string started_at;  ///< UTC; empty: the start time is not known
   std::string recipe;      ///< recipe of the run; only runs with equal recipes are compared
-  std::string baseline;    ///< id of the baseline relative to which the run was scored
+  std::string baseline;    ///< id of the baseline relative to which the run was scored; empty: the finger had
+                           ///< no baseline, and no indicator was computed
   GripScore score;
   /// Median temperature of the run [degC]; NaN: not recorded.
   double temperature_c = std::numeric_limits<double>::quiet_NaN();
@@ -36,7 +37,7 @@ inline constexpr const char* scores_file = "health-scores.jsonl";
 /// of earlier days.
 [[nodiscard]] tl::expected<std::string, std::string> earlier_scores(const std::string& path);
 /// Reads the lines of the file of the scores. A line that is incomplete, for example after a power failure,
-/// is skipped.
+/// is skipped. A line without a finger is skipped too: earlier versions scored logs of unknown fingers.
 [[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
 /// Returns the scores of a run as one line of the file, with a line break at the end.
 [[nodiscard]] std::string line_of(const ScoredRun& run);

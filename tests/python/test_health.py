@@ -138,7 +138,7 @@ class Health(unittest.TestCase):
         (self.at / "bad.yaml").write_text("notes:\n  - {date: soon, action: x}\n")
         for call, kind, text in (
                 (lambda: health(self.recordings, broken), softgrip.MalformedFile, "model.yaml was changed"),
-                (lambda: health(self.recordings, self.at / "nowhere"), softgrip.NoResult, "no baseline of `left`"),
+                (lambda: health(self.recordings, self.at / "nowhere"), softgrip.MalformedFile, "nowhere does not exist"),
                 (lambda: health(self.at / "nothing", self.baseline), softgrip.NoResult, "no recording can be compared"),
                 (lambda: health(self.recordings, self.baseline, notes=self.at / "bad.yaml"), softgrip.MalformedFile, "not a date"),
                 (lambda: health(self.recordings, self.baseline, notes=self.at / "none"), softgrip.MalformedFile, "none"),

@@ -136,9 +136,28 @@ class Health(bench.BenchTest):
         # The command must not score the same recording a second time.
         self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
 
+    def test_a_finger_without_a_baseline_is_reported_once_in_each_call(self):
+        shutil.copytree(self.baseline, self.folder / "bases/left")
+        for _ in range(2):
+            done = self.softgrip("health", *self.healthy, "--baseline", "bases", "--out", "out")
+            self.assertEqual(done.stderr.count("there is no baseline of `right`"), 1, done.stderr)
+            self.assertEqual([one["finger"] for one in json.loads((self.folder / "out/health.json").read_text())["skipped"]],
+                             ["right"])
+
     def test_invalid_recordings_baselines_and_notes_are_rejected(self):
-        self.softgrip("health", self.healthy[0], "--baseline", self.folder, expect=3)
-        self.softgrip("health", self.folder, "--baseline", self.baseline, expect=3)
+        def refused(code, *arguments):
+            return self.softgrip("health", *arguments, "--out", self.folder / "out", expect=code).stderr
+
+        self.assertIn("is not a baseline", refused(3, self.healthy[0], "--baseline", self.folder))
+        self.assertEqual(refused(4, *self.healthy, "--baseline", "nosuch"), "softgrip: nosuch does not exist\n")
+        self.assertIn("the folder contains no recordings", refused(3, self.folder, "--baseline", self.baseline))
+        self.write("log.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1,1,1\n0.2,2,2\n0.3,3,3\n")
+        self.assertIn("log.csv is skipped: this is not a recording", refused(3, "log.csv", "--baseline", self.baseline))
+        self.write("lft.yaml", "notes:\n  - {date: 2026-08-03, finger: lft, action: x}\n")
+        misspelled = refused(3, *self.healthy, "--baseline", self.baseline, "--notes", "lft.yaml")
+        self.assertIn("lft.yaml:2:", misspelled)
+        self.assertIn("did you mean `left`?", misspelled)
+        self.assertEqual(list((self.folder / "out").iterdir()), [])
         notes = self.write("bad.yaml", "notes:\n  - {date: soon, mended: x}\n")
         self.softgrip("health", *self.healthy, "--baseline", self.baseline, "--notes", notes, expect=3)
         self.softgrip("health", *self.healthy, "--baseline", self.baseline, "--notes", self.folder / "none", expect=4)

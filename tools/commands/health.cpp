@@ -44,10 +44,11 @@ tl::expected<std::vector<health::Note>, ExitCode> notes_of(const HealthOptions& 
   return *std::move(notes);
 }
 
-/// Prints the reasons why baselines were refused and returns the exit code.
-ExitCode refuse_baselines(const std::vector<health::RefusedBaseline>& baselines) {
+/// Prints the reasons why baselines or notes were refused and returns the exit code.
+ExitCode refuse_inputs(const health::HealthRefusal& refusal) {
+  if (!refusal.notes.empty()) return refuse(refusal.notes);
   ExitCode code = ExitCode::input_refused;
-  for (const health::RefusedBaseline& baseline : baselines) {
+  for (const health::RefusedBaseline& baseline : refusal.baselines) {
     const ExitCode refused =
         baseline.why.empty() ? refuse(baseline.problems) : fail(ExitCode::input_refused, baseline.why);
     code = baseline.unreadable ? ExitCode::io : refused;
@@ -80,8 +81,7 @@ tl::expected<void, std::string> write_results(const std::string& out, const heal
   };
   if (auto written = write(health::scores_file, rig.scores); !written) return written;
   for (const health::JudgedFinger& finger : rig.fingers) {
-    const std::string page =
-        finger.health.finger.empty() ? "health.html" : "health-" + finger.health.finger + ".html";
+    const std::string page = "health-" + finger.health.finger + ".html";
     if (auto written = write(page, health_page(finger.health, finger.suspicion, finger.source).to_html());
         !written)
       return written;
@@ -108,9 +108,11 @@ ExitCode run(const HealthOptions& chosen) {
     question.scores = *std::move(earlier);
   }
   const auto rig = health::recorded_health(question);
-  if (!rig) return refuse_baselines(rig.error());
-  for (const health::SkippedRun& skipped : rig->skipped)
-    std::fprintf(stderr, "softgrip: %s is skipped: %s\n", skipped.run.c_str(), skipped.why.c_str());
+  if (!rig) return refuse_inputs(rig.error());
+  for (const health::SkippedRun& skipped : rig->skipped) {
+    const std::string& name = skipped.finger.empty() ? skipped.run : skipped.finger;
+    std::fprintf(stderr, "softgrip: %s is skipped: %s\n", name.c_str(), skipped.why.c_str());
+  }
   if (rig->fingers.empty())
     return fail(ExitCode::input_refused, "no recording can be compared with " + options.baseline);
   const std::string json = result::json_text(health::fields_of(*rig, wall_time_now()));

@@ -89,14 +89,82 @@ TEST_F(Recorded, ExistingScoresAreKeptWithoutReadingRecordings) {
   EXPECT_EQ(read_scores(second->scores).size(), 2U);
 }
 
-TEST_F(Recorded, FingerWithoutABaselineIsSkipped) {
+TEST_F(Recorded, AFingerWithoutABaselineIsReportedOnceInEachCall) {
+  for (const char* name : {"one", "two", "three"}) {
+    const std::string right = rows("right", 20);
+    write(std::string("recordings/") + name + "/run.csv",
+          rows("left", 20) + right.substr(right.find('\n') + 1));
+  }
+  write_baseline("rig/left", 20);
+  HealthQuestion asked = question();
+  asked.baseline = at("rig");
+  for (int call = 0; call < 2; ++call) {
+    const auto found = recorded_health(asked);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->fingers.size(), 1U);
+    ASSERT_EQ(found->skipped.size(), 1U) << "call " << call;
+    EXPECT_EQ(found->skipped[0].finger, "right");
+    EXPECT_NE(found->skipped[0].why.find("no baseline of `right`"), std::string::npos);
+    EXPECT_NE(found->skipped[0].why.find("in 3 recordings"), std::string::npos) << found->skipped[0].why;
+    EXPECT_EQ(result::json_of(fields_of(*found, 1))["skipped"][0]["finger"], "right");
+    EXPECT_EQ(read_scores(found->scores).size(), 6U) << "no recording is read a second time";
+    asked.scores = found->scores;
+  }
+  write_baseline("rig/right", 20);
+  const auto complete = recorded_health(asked);
+  ASSERT_TRUE(complete);
+  EXPECT_EQ(complete->fingers.size(), 2U) << "the recordings are read again for the new baseline";
+  EXPECT_TRUE(complete->skipped.empty());
+}
+
+TEST_F(Recorded, AMissingBaselineIsAnError) {
   write("recordings/one/run.csv", rows("left", 20));
   HealthQuestion asked = question();
   asked.baseline = at("nothing");
+  const auto missing = recorded_health(asked);
+  ASSERT_FALSE(missing);
+  ASSERT_EQ(missing.error().baselines.size(), 1U);
+  EXPECT_EQ(missing.error().baselines[0].why, at("nothing") + " does not exist");
+  EXPECT_TRUE(missing.error().baselines[0].unreadable);
+  asked.baseline = at("recordings");
+  const auto other = recorded_health(asked);
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().baselines[0].why.find("is not a baseline"), std::string::npos);
+  EXPECT_FALSE(other.error().baselines[0].unreadable);
+}
+
+TEST_F(Recorded, AnEmptyFolderAndALogWithoutAFingerAreSkipped) {
+  write("recordings/health/health.json", "{}");
+  write("log.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1,1,1\n0.2,2,2\n0.3,3,3\n");
+  HealthQuestion asked = question();
+  asked.recordings.push_back(at("log.csv"));
   const auto found = recorded_health(asked);
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->fingers.empty());
-  ASSERT_EQ(found->skipped.size(), 1U);
+  ASSERT_EQ(found->skipped.size(), 2U);
+  EXPECT_EQ(found->skipped[0].why, "the folder contains no recordings");
+  EXPECT_NE(found->skipped[1].why.find("not a recording"), std::string::npos) << found->skipped[1].why;
+}
+
+TEST_F(Recorded, ANoteAboutAnUnknownFingerIsRefused) {
+  write("recordings/one/run.csv", rows("left", 20));
+  write_baseline("baseline/thumb", 20);
+  const auto with_note = [&](const std::string& finger) {
+    HealthQuestion asked = question();
+    document::Problems problems;
+    asked.notes = *read_notes(
+        "notes.yaml", "notes:\n  - {date: 2026-11-03, finger: " + finger + ", action: x}\n", problems);
+    return recorded_health(asked);
+  };
+  EXPECT_TRUE(with_note("left")) << "a finger of a recording";
+  EXPECT_TRUE(with_note("thumb")) << "a finger with a baseline";
+  const auto misspelled = with_note("lft");
+  ASSERT_FALSE(misspelled);
+  ASSERT_EQ(misspelled.error().notes.list().size(), 1U);
+  const document::Problem& problem = misspelled.error().notes.list()[0];
+  EXPECT_EQ(problem.at.line, 2);
+  EXPECT_NE(problem.message.find("`lft`"), std::string::npos);
+  EXPECT_EQ(problem.hint, "did you mean `left`?");
 }
 
 TEST_F(Recorded, ARefusedBaselineIsAnError) {
@@ -104,12 +172,13 @@ TEST_F(Recorded, ARefusedBaselineIsAnError) {
   write("baseline/model.yaml", "changed");
   const auto changed = recorded_health(question());
   ASSERT_FALSE(changed);
-  ASSERT_EQ(changed.error().size(), 1U);
-  EXPECT_NE(changed.error()[0].why.find("model.yaml"), std::string::npos);
+  ASSERT_EQ(changed.error().baselines.size(), 1U);
+  EXPECT_NE(changed.error().baselines[0].why.find("model.yaml"), std::string::npos);
   write_baseline("baseline", 0);
   const auto without_pressure = recorded_health(question());
   ASSERT_FALSE(without_pressure);
-  EXPECT_FALSE(without_pressure.error()[0].why.empty() && without_pressure.error()[0].problems.empty());
+  EXPECT_FALSE(without_pressure.error().baselines[0].why.empty() &&
+               without_pressure.error().baselines[0].problems.empty());
 }
 
 }  // namespace
