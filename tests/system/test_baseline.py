@@ -128,7 +128,8 @@ class Baseline(bench.BenchTest):
         for arguments, code, why in (
                 (["--rig", free, "--out", "base"], 2, "the rig has 2 channels"),
                 (["--rig", free, "--rig-channel", "middle", "--out", "base"], 2, "no channel 'middle'"),
-                (["--rig", free, "--rig-channel", "left", "--out", "config"], 2, "config already exists"),
+                (["--rig", free, "--rig-channel", "left", "--out", "config"], 5, "config already exists"),
+                (["--data", "config/rig.yaml", "--out", "config/models"], 5, "config/models already exists"),
                 (["--rig", free, "--rig-channel", "left"], 2, "--out is required"),
                 (["--rig", free, "--data", "log.csv", "--out", "base"], 2, "excludes"),
                 (["--rig", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),

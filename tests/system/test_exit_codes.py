@@ -41,8 +41,9 @@ FILE_COMMANDS = {
                      writes="study/control.json"),
     "report": Command("report --verify judged", "report --verify spoilt", "validate.json"),
     "completion": Command("completion bash", "completion tcsh"),
-    "baseline": Command(f"baseline --data log.csv --model {TWIN} --out {{out}}/base",
-                        f"baseline --data bad.csv --model {TWIN} --out {{out}}/base", "log.csv", "base/baseline.json"),
+    "baseline": Command(f"baseline --data log.csv --model {TWIN} --out {{out}}/new.base",
+                        f"baseline --data bad.csv --model {TWIN} --out {{out}}/new.base", "log.csv", "new.base/baseline.json",
+                        new=True),
     "investigate": Command(f"investigate --model {TWIN} --data log.csv --rig config/rig.yaml --rig-channel left --yes "
                            "--no-closed-loop --out {out}/found",
                            f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
@@ -201,7 +202,7 @@ class FileCommands(bench.BenchTest):
         def check(name, command, cell):
             self.ended(self.runner.unread(command.done, ignored=False), cell, signal.SIGPIPE)
             if name != "study":
-                done = self.runner.unread(command.done.replace("new.yaml", "newer.yaml"), ignored=True)
+                done = self.runner.unread(command.done.replace("/new.", "/newer."), ignored=True)
                 self.ended(done, "4")
                 self.assertIn("standard output", done.stderr.decode())
 

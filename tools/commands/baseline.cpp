@@ -157,10 +157,6 @@ std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, c
 }
 
 tl::expected<Runs, ExitCode> played(const BaselineOptions& options) {
-  std::error_code none;
-  if (std::filesystem::exists(options.out, none) && !std::filesystem::is_empty(options.out, none))
-    return tl::unexpected(
-        fail(ExitCode::usage, options.out + " already exists: give the name of a new folder"));
   const auto rig = rig_to_move(
       options.rig, options.rig_channel.empty() ? options.logs.channel : options.rig_channel, options.yes);
   if (!rig) return tl::unexpected(rig.error());
@@ -259,6 +255,10 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
   inputs.insert(inputs.end(), options.check.begin(), options.check.end());
   inputs.insert(inputs.end(), {options.rig, options.gauge, options.model});
   if (const auto code = refuse_overwriting(files_in(options.out, baseline_files()), inputs)) return *code;
+  std::error_code none;
+  if (std::filesystem::exists(options.out, none) && !std::filesystem::is_empty(options.out, none))
+    return fail(ExitCode::state_refused,
+                options.out + " already exists and is not changed: give the name of a new folder");
   auto runs = options.rig.empty() ? recorded(options) : played(options);
   if (!runs) return runs.error();
   return keep(options, std::move(*runs), call);
