@@ -144,6 +144,11 @@ void DaemonParts::conclude(Outcome& outcome) {
     if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
   }
   if (outcome.ending == Ending::asked && one_shot_run) conclude_one_shot_run(*one_shot_run, outcome);
+  if (outcome.ending == Ending::not_idle && !service.bus_failure().text.empty()) {
+    outcome.ending = Ending::board_unreachable;
+    outcome.message = fmt::format("the board cannot be used, so the rig did not become idle within {} s: {}",
+                                  patience / ns_per_s, service.bus_failure().text);
+  }
 }
 
 void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome) {
@@ -207,6 +212,7 @@ ExitCode exit_code_of(const Outcome& outcome) noexcept {
       return ExitCode::input_refused;
     case Ending::socket_failed:
     case Ending::board_taken:
+    case Ending::board_unreachable:
     case Ending::gpio_failed:
       return ExitCode::io;
     case Ending::sequence_refused:

@@ -55,6 +55,7 @@ enum class Ending : std::uint8_t {
   sequence_ended,     ///< the sequence of the run ended; Outcome::sequence_end gives its result
   sequence_refused,   ///< the rig was in a state in which a sequence must not start
   not_idle,           ///< the rig did not become idle in time, so the sequence was not started
+  board_unreachable,  ///< the rig did not become idle in time, because the board does not respond
   real_time_refused,  ///< the rig file has `real_time: required: true`, and a setting could not be verified
   socket_failed,      ///< the socket of the daemon could not be opened
   board_taken,        ///< another program drives the board

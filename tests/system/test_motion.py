@@ -130,6 +130,13 @@ class Silent(MotionTest):
         vented = left.index(min(left))
         self.assertLessEqual(max(left[vented:]), NOISE_KPA, left[:200])
 
+    def test_run_names_the_bus_fault_of_a_board_that_is_switched_off(self):
+        self.board.kill()
+        done = self.softgrip("run", "config/sequences/pick_stone.yaml", "--no-socket", "--rig", self.rig_path, expect=4)
+        last = [line for line in done.stderr.splitlines() if line.startswith("softgrip: ")][-1]
+        self.assertIn("the board cannot be used, so the rig did not become idle within 10 s: ", last)
+        self.assertIn("Connection refused", last)
+
     def test_calibrate_raises_no_pressure_after_lost_requests(self):
         _, samples = self.check("calibrate", "requests_lost", 4)
         self.check_nothing_rises_again(samples)

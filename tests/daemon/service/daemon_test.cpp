@@ -108,6 +108,7 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
       << "the daemon was interrupted before the requested sequence finished";
   EXPECT_EQ(code(Ending::sequence_refused), ExitCode::state_refused);
   EXPECT_EQ(code(Ending::not_idle), ExitCode::state_refused);
+  EXPECT_EQ(code(Ending::board_unreachable), ExitCode::io);
   EXPECT_EQ(code(Ending::real_time_refused), ExitCode::failed);
   EXPECT_EQ(code(Ending::socket_failed), ExitCode::io);
   EXPECT_EQ(code(Ending::board_taken), ExitCode::io);
