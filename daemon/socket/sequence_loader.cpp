@@ -70,7 +70,13 @@ SequenceLoader::Result SequenceLoader::load_named(const std::string& name, Argum
   }
   std::string path = directory_ + "/" + name;
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) path += ".yaml";
+  if (name.ends_with(ending)) {
+    if (!std::filesystem::exists(path, ignored))
+      return refused(path, "there is no such file, and the client sent no text of a file with this name",
+                     hint_of(name.substr(0, name.size() - ending.size()), directory_, names()));
+    return load_file(path, arguments, stop);
+  }
+  if (!std::filesystem::exists(path, ignored)) path += ending;
   if (!std::filesystem::exists(path, ignored)) {
     return refused(path, fmt::format("there is no sequence '{}'", name), hint_of(name, directory_, names()));
   }

@@ -76,6 +76,11 @@ class Kill(bench.BenchTest):
         self.assertEqual(grip(), "ERROR")
         self.assertEqual(again.wait_for_event("not_at_rest", channel="left")["code"], "off_model")
         again.wait_for_state("idle")
+        for arguments in ((), ("--json",)):
+            done = self.softgrip("start", "pick_stone", "--wait", *arguments, "--socket", again.socket_path, expect=6)
+            self.assertRegex(done.stderr.splitlines()[-1], "pick_stone was not completed. left: Start aborted: at rest, the finger")
+            self.assertIn("Start aborted", done.stdout)
+            again.wait_for_state("idle")
         again.start("free_stroke")
         again.wait_for_event("sequence_finished", code="done")
         self.assertEqual(grip(), "HOLDING")

@@ -154,6 +154,12 @@ class WithADaemon(bench.BenchTest):
         self.assertIn("there is no sequence 'nope'", unknown)
         self.assertIn("hand_over, pick_screw, pick_stone", unknown)
         self.assertIn("did you mean 'pick_stone'?", self.softgrip("start", "pick_stne", expect=3).stderr)
+        file = self.softgrip("start", "pick_stne.yaml", expect=3).stderr
+        self.assertIn("there is no such file", file)
+        self.assertIn("did you mean 'pick_stone'?", file)
+        self.assertNotIn(".yaml.yaml", file)
+        named = self.softgrip("run", "pick_stone", expect=4).stderr
+        self.assertIn("`softgrip run` needs the path of a sequence file", named)
         wrong = self.softgrip("start", "pick_stone", "--set", "squeeze_kpa=40", expect=3).stderr
         self.assertRegex(wrong, r"pick_stone\.yaml:9:3: `squeeze_kpa` is set to 40, outside its range of 3 to 10")
         self.assertIn("did you mean `hold_s`?", self.softgrip("start", "pick_stone", "--set", "hold=1",

@@ -78,6 +78,10 @@ struct StatusParts {
 /// until the next start".
 [[nodiscard]] std::string sentence_of_acknowledged(const nlohmann::ordered_json& result);
 
+/// Returns the text of an event that states why a sequence failed: a finger was not at rest, or a fault
+/// latched. Returns "" for every other event.
+[[nodiscard]] std::string failure_reason(const nlohmann::ordered_json& event);
+
 /// Formats an event for a narrow screen: "09:32:05 !  left: Grip result: NO PART.". `!` marks a warning and
 /// `!!` an error.
 [[nodiscard]] std::string brief_line_of_event(const nlohmann::ordered_json& event);

@@ -69,6 +69,14 @@ std::string sentence_of_acknowledged(const nlohmann::ordered_json& result) {
          "; nothing moves until the next start";
 }
 
+std::string failure_reason(const nlohmann::ordered_json& event) {
+  const std::string kind = event.value("kind", "");
+  if (kind != "not_at_rest" && kind != "fault_latched") return {};
+  const std::string channel = event.value("channel", "");
+  const std::string text = document::shown(event.value("text", ""), longest_text);
+  return channel.empty() || text.starts_with(channel) ? text : channel + ": " + text;
+}
+
 std::string brief_line_of_event(const nlohmann::ordered_json& event) {
   constexpr std::size_t date_columns = 11;
   constexpr std::size_t clock_columns = 8;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/exit_code.h"
+#include "base/files.h"
 #include "base/numbers.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
@@ -35,7 +36,8 @@ struct RunOptions {
   bool json = false;
 };
 
-void report(const RunOptions& options, const daemon::Outcome& outcome) {
+/// Prints the result. `reason` states why the sequence failed; it may be empty.
+void report(const RunOptions& options, const daemon::Outcome& outcome, const std::string& reason) {
   const std::vector<std::string>& channels = outcome.channel_names;
   const std::string end =
       outcome.sequence_end ? std::string(control::name_of(*outcome.sequence_end)) : std::string("not run");
@@ -49,6 +51,7 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
               {"ticks", outcome.ticks},    {"overruns", outcome.overruns},
               {"slips", outcome.overruns}, {"wall_s", outcome.wall_s},
               {"results", Json::object()}};
+    if (!reason.empty()) json["reason"] = reason;
     for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
     print_json(json);
     return;
@@ -66,11 +69,26 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
               significant(outcome.wall_s, 4).c_str(),
               outcome.safe_state_confirmed ? "the board confirmed the safe outputs"
                                            : "the board did NOT confirm the safe outputs");
+  if (!reason.empty()) std::printf("%s\n", reason.c_str());
+}
+
+/// Reports that the sequence file cannot be read. SEQUENCE may be the name of a sequence, as for `start`.
+ExitCode no_sequence_file(const std::string& sequence, const std::string& why) {
+  std::string message = "cannot read " + sequence + ": " + why;
+  const std::string named = configuration_path("sequences/" + sequence + ".yaml");
+  if (is_there(named))
+    message += ". `softgrip run` needs the path of a sequence file: " + named;
+  else if (sequence.find('/') == std::string::npos && !sequence.ends_with(".yaml"))
+    message +=
+        ". `softgrip run` needs the path of a sequence file; `softgrip start` also accepts the name of "
+        "a sequence of the daemon";
+  return fail(ExitCode::io, message);
 }
 
 ExitCode run(const RunOptions& options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
-  if (const auto code = unreadable(options.sequence)) return *code;
+  if (const std::string why = why_unreadable(options.sequence); !why.empty())
+    return no_sequence_file(options.sequence, why);
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
   auto rig = read_rig(path);
@@ -87,7 +105,9 @@ ExitCode run(const RunOptions& options) {
   daemon_options.sequence = std::move(*sequence);
   daemon_options.record_folder = options.record;
   daemon_options.listen = !options.no_socket;
-  daemon_options.on_event = [&options](const daemon::EventEntry& event) {
+  std::string reason;
+  daemon_options.on_event = [&options, &reason](const daemon::EventEntry& event) {
+    if (reason.empty()) reason = failure_reason(daemon::event_json(event));
     if (options.quiet) return;
     if (options.json) {
       print_json(daemon::event_json(event));
@@ -105,7 +125,8 @@ ExitCode run(const RunOptions& options) {
   if (!outcome.message.empty()) fail(ExitCode::failed, outcome.message);
   if (!outcome.recording_error.empty())
     fail(ExitCode::io, "the recording is incomplete: " + outcome.recording_error);
-  report(options, outcome);
+  const bool completed = outcome.sequence_end == control::SequenceEnd::done;
+  report(options, outcome, completed ? std::string() : reason);
   return daemon::exit_code_of(outcome);
 }
 

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/exit_code.h"
 #include "base/files.h"
@@ -120,26 +121,34 @@ tl::expected<void, Break> FollowedStart::print(const Json& event) const {
                               {ExitCode::io, "the standard output cannot be written"}}};
 }
 
-/// Prints the events until the sequence that `request` started has ended.
+/// Prints the events until the sequence that `request` started has ended. The event with the reason of a
+/// failure can follow the end of the sequence, so the events after the end are read once more.
 tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::uint64_t since) {
   constexpr std::chrono::milliseconds pause{50};
   // Ignore SIGPIPE, so that flushing the output detects a closed pipe. The sequence is stopped before the
   // program ends.
   pipe_ends_ = std::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
+  std::string reason;
+  std::optional<ExitCode> end;
   while (true) {
     const auto line = reply(client_, {{"command", "events"}, {"since", since}, {"limit", 1000}},
                             DaemonClient::reply_timeout);
     if (!line) return tl::unexpected{line.error()};
     const auto result = DaemonClient::result_of(*line);
     if (!result) return tl::unexpected{Break{0, result.error()}};
+    const bool ended_before = end.has_value();
     for (const Json& event : result->value("events", Json::array())) {
       since = event.value("id", since);
       if (const auto printed = print(event); !printed) return tl::unexpected{printed.error()};
+      if (reason.empty()) reason = failure_reason(event);
       if (event.value("kind", "") == "sequence_finished" &&
           event.value("request", std::uint64_t{0}) == request) {
-        return event.value("code", "") == "done" ? ExitCode::done : ExitCode::not_acceptable;
+        if (event.value("code", "") == "done") return ExitCode::done;
+        end = ExitCode::not_acceptable;
       }
     }
+    if (end && (ended_before || !reason.empty()))
+      return reason.empty() ? *end : fail(*end, options_.sequence + " was not completed. " + reason);
     if (const int signal = signal_within(pause); signal != 0) return tl::unexpected{Break{signal, {}}};
   }
 }
