@@ -1,8 +1,11 @@
 #include "tools/command_line/program.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iterator>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,8 +43,27 @@ std::vector<std::string> options_of(const CLI::App& app) {
   return names;
 }
 
+/// Returns the shortest name that begins with `word`, otherwise the most similar name; "" if there is none.
+std::string candidate_for(const std::string& word, const std::vector<std::string>& names) {
+  constexpr std::size_t shortest_beginning = 3;
+  const std::string* completed = nullptr;
+  for (const std::string& name : names) {
+    const bool begins = word.size() >= shortest_beginning && name.starts_with(word);
+    if (begins && (completed == nullptr || name.size() < completed->size())) completed = &name;
+  }
+  return completed != nullptr ? *completed : document::nearest(word, names);
+}
+
+/// Suggests a command that moves a rig only if no other name is similar: a user may repeat the suggestion
+/// without reading it.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
-  const std::string near = document::nearest(word, names);
+  static const std::set<std::string> moving{"baseline", "calibrate", "investigate",
+                                            "release",  "run",       "start"};
+  std::vector<std::string> harmless;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(harmless),
+               [](const std::string& name) { return !moving.contains(name); });
+  std::string near = candidate_for(word, harmless);
+  if (near.empty()) near = candidate_for(word, names);
   return near.empty() ? std::string() : "did you mean `" + near + "`?";
 }
 

@@ -53,6 +53,14 @@ TEST(Usage, SuggestsTheNearestCommandForAMistypedOne) {
   EXPECT_NE(said_of({"statsu", "--json"}).text.find("did you mean `status`?"), std::string::npos);
 }
 
+TEST(Usage, SuggestsACommandThatMovesARigOnlyIfNoOtherNameIsSimilar) {
+  EXPECT_NE(said_of({"stat"}).text.find("did you mean `status`?"), std::string::npos)
+      << said_of({"stat"}).text;
+  EXPECT_NE(said_of({"sta"}).text.find("did you mean `status`?"), std::string::npos);
+  EXPECT_NE(said_of({"star"}).text.find("did you mean `start`?"), std::string::npos);
+  EXPECT_EQ(said_of({"st"}).text.find("did you mean"), std::string::npos) << "2 letters are too few";
+}
+
 TEST(Usage, SuggestsTheNearestOptionOfTheCommand) {
   const Said said = said_of({"status", "--jsno"});
   EXPECT_EQ(said.code, 2);
