@@ -88,7 +88,7 @@ class Init(bench.BenchTest):
 
     def test_an_option_without_a_default_value_is_required(self):
         done = self.softgrip("init", "mine.yaml", "--board", "adam-6024", expect=2)
-        self.assertIn("--address is required", done.stderr)
+        self.assertIn("without a terminal, the option --address is required", done.stderr)
         self.assertFalse((self.folder / "mine.yaml").exists())
 
     def test_an_existing_file_is_not_overwritten(self):
@@ -96,6 +96,16 @@ class Init(bench.BenchTest):
         done = self.softgrip("init", "config/rig.yaml", *self.OPTIONS, expect=5)
         self.assertIn("already exists", done.stderr)
         self.assertEqual((self.folder / "config/rig.yaml").read_bytes(), before)
+
+    def test_a_refused_rig_file_is_explained_by_the_option(self):
+        done = self.softgrip("init", "mine.yaml", *self.OPTIONS, "--rate-hz", "5000", expect=3)
+        self.assertIn("--rate-hz 5000: the rig cannot be used at this rate", done.stderr)
+        self.assertNotIn("mine.yaml:", done.stderr)
+        for option, values, why in (("--sensor-mm", ("-0.005", "0.045"), "are in mm"), ("--valve-kpa", ("100", "0"), "Enter 0 100")):
+            done = self.softgrip("init", "mine.yaml", *self.OPTIONS, option, *values, expect=2)
+            self.assertIn(f"{option}: ", done.stderr)
+            self.assertIn(why, done.stderr)
+        self.assertFalse((self.folder / "mine.yaml").exists())
 
     def test_an_invalid_option_writes_no_file(self):
         done = self.softgrip("init", "mine.yaml", *self.OPTIONS, "--pressure-max-kpa", "lots", expect=2)

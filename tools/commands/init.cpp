@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "base/numbers.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
@@ -81,12 +82,29 @@ std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, Rig
     return fail(ExitCode::failed, "stopped: nothing was written");
   }
   if (question->otherwise.empty()) {
-    return fail(ExitCode::usage, "without a terminal, give the option --" + fact.key + " is required (" +
-                                     question->text + ")");
+    return fail(ExitCode::usage,
+                "without a terminal, the option --" + fact.key + " is required (" + question->text + ")");
   }
   const std::string complaint = fact.take(question->otherwise, draft);
   if (complaint.empty()) return std::nullopt;
   return fail(ExitCode::usage, "--" + fact.key + " is required: " + complaint);
+}
+
+/// Reports why the options give no valid rig file. The file was not written, so the lines of its text are
+/// printed without their numbers.
+ExitCode refuse_draft(const InitOptions& options, RigDraft draft, const document::Problems& problems) {
+  std::string why;
+  for (const document::Problem& problem : problems.list()) why += "\n  " + problem.message;
+  draft.rate_hz.reset();
+  if (options.rate_hz > 0 && draft_text(draft, options.file))
+    return fail(ExitCode::input_refused, "--rate-hz " + significant(options.rate_hz, 6) +
+                                             ": the rig cannot be used at this rate, so nothing was "
+                                             "written. Without --rate-hz, init selects a rate" +
+                                             why);
+  return fail(ExitCode::input_refused,
+              "these options give no valid rig file, so nothing was written. Check --pressure-max-kpa, "
+              "--valve-kpa, --sensor-mm and --model" +
+                  why);
 }
 
 ExitCode run(const InitOptions& options) {
@@ -105,7 +123,7 @@ ExitCode run(const InitOptions& options) {
     if (const auto code = settle(fact, options, draft, person)) return *code;
   }
   const auto text = draft_text(draft, options.file);
-  if (!text) return refuse(text.error());
+  if (!text) return refuse_draft(options, draft, text.error());
   if (const auto written = create_file(options.file, *text); !written)
     return fail(ExitCode::io, written.error());
   std::printf("%s was written. Next:\n  softgrip check %s\n  softgrip doctor --rig %s\n",

@@ -65,7 +65,11 @@ std::string path_of(const std::string& word, const std::string& folder) {
 std::string unknown_name(const std::string& word, const std::string& folder) {
   const std::vector<std::string> names = names_in(folder);
   const std::string near = document::nearest(word, names);
-  const std::string all = names.empty() ? "the folder is empty" : "available: " + with_commas(names);
+  std::error_code error;
+  const bool exists = std::filesystem::is_directory(configuration_path(folder), error);
+  const std::string all = !exists         ? "this folder does not exist"
+                          : names.empty() ? "the folder is empty"
+                                          : "available: " + with_commas(names);
   const std::string hint = near.empty() ? all : "did you mean " + near + "?";
   return document::in_backticks(word) + " is neither a file nor a name in " + configuration_path(folder) +
          ": " + hint;
@@ -229,6 +233,10 @@ std::string take_valve(const std::string& text, RigDraft& draft) {
   const auto numbers = two_numbers(text);
   if (!numbers) return document::in_backticks(text) + ": enter two different pressures, for example 0 100";
   if (std::max(numbers->first, numbers->second) <= 0) return "at least one of the pressures must be above 0";
+  if (numbers->first > numbers->second)
+    return fmt::format(
+        "{}: a valve without a signal must vent, so the lower pressure comes first. Enter {} {}",
+        document::in_backticks(text), written(numbers->second), written(numbers->first));
   const ElectricalRange range = output_range(draft);
   draft.valve = {range.lowest, numbers->first, range.highest, numbers->second};
   return "";
@@ -258,10 +266,17 @@ std::optional<Question> ask_sensor(const RigDraft& draft) {
                   "-5 45"};
 }
 
+/// Smallest range of a sensor [mm]. The rig file states the limits of the displacement with a resolution of
+/// 0.1 mm, so a smaller range is probably not in mm.
+constexpr double least_sensor_range_mm = 1;
+
 std::string take_sensor(const std::string& text, RigDraft& draft) {
   const auto numbers = two_numbers(text);
   if (!numbers)
     return document::in_backticks(text) + ": enter two different displacements, for example -5 45";
+  if (std::abs(numbers->second - numbers->first) < least_sensor_range_mm)
+    return fmt::format("{}: the displacements are in mm, and their difference must be at least {} mm",
+                       document::in_backticks(text), written(least_sensor_range_mm));
   const ElectricalRange range = input_range(draft);
   draft.sensor = {range.lowest, numbers->first, range.highest, numbers->second};
   return "";

@@ -168,6 +168,8 @@ TEST(DraftFacts, ErrorStatesWhyAnAnswerIsRefused) {
   EXPECT_NE(take(draft, "unit", "one"), "");
   EXPECT_NE(take(draft, "valve-kpa", "100"), "");
   EXPECT_NE(take(draft, "valve-kpa", "0 0"), "");
+  EXPECT_NE(take(draft, "valve-kpa", "100 0").find("Enter 0 100"), std::string::npos);
+  EXPECT_NE(take(draft, "sensor-mm", "-0.005 0.045").find("in mm"), std::string::npos);
   EXPECT_EQ(take(draft, "valve-kpa", "0 6,5"), "") << "a decimal comma is accepted";
   EXPECT_NE(take(draft, "pressure-max-kpa", "60").find("at most 6.5"), std::string::npos);
   EXPECT_NE(take(draft, "monitor", "perhaps"), "");
