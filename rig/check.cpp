@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/enum_table.h"
+#include "base/text.h"
 #include "control/sequences/sequence_file.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
@@ -135,16 +136,49 @@ control::RigSettings known_settings(const RigReading& reading) {
   return settings;
 }
 
+/// A problem of a sequence, and the rig files with which the problem occurs.
+struct ProblemWithRigs {
+  document::Problem problem;
+  std::vector<std::string> rig_files;
+};
+
+void add_of_rig(const std::vector<document::Problem>& found, const std::string& rig_file,
+                std::vector<ProblemWithRigs>& all) {
+  for (const document::Problem& problem : found) {
+    const auto known =
+        std::ranges::find_if(all, [&](const ProblemWithRigs& one) { return one.problem == problem; });
+    if (known == all.end())
+      all.push_back({problem, {rig_file}});
+    else if (known->rig_files.back() != rig_file)
+      known->rig_files.push_back(rig_file);
+  }
+}
+
+/// Returns the problem. If several rigs are checked, the message names the rig files with this problem.
+document::Problem named(const ProblemWithRigs& one, const Read& read) {
+  document::Problem problem = one.problem;
+  if (read.rigs.size() == 1) return problem;
+  problem.message += one.rig_files.size() == 1 ? " (rig file " : " (rig files ";
+  problem.message += with_commas(one.rig_files) + ")";
+  return problem;
+}
+
 void fit_sequences(const Read& read, document::Problems& problems) {
+  std::vector<ProblemWithRigs> errors, warnings;
   for (const ReadRig& rig : read.rigs) {
     if (!rig.reading.fits_sequences) continue;
     const control::RigSettings settings = known_settings(rig.reading);
     for (const control::Sequence& sequence : read.sequences) {
-      static_cast<void>(control::prepare(sequence, settings, problems));
-      control::check_ranges(sequence, settings, problems);
+      document::Problems found;
+      static_cast<void>(control::prepare(sequence, settings, found));
+      control::check_ranges(sequence, settings, found);
+      add_of_rig(found.list(), rig.document.file, errors);
+      add_of_rig(found.warnings(), rig.document.file, warnings);
       if (rig.reading.accepted) compare_grips(sequence, rig.reading.rig, problems);
     }
   }
+  for (const ProblemWithRigs& error : errors) problems.add(named(error, read));
+  for (const ProblemWithRigs& warning : warnings) problems.warn(named(warning, read));
 }
 
 void compare(const Read& read, document::Problems& problems) {

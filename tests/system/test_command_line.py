@@ -5,9 +5,12 @@ import os
 import pty
 import select
 import socket
+import subprocess
 import time
 
 import bench
+import plc
+import web
 
 
 class Offline(bench.BenchTest):
@@ -56,6 +59,8 @@ class Offline(bench.BenchTest):
         good = self.softgrip("check", *(path for path in files if path not in vacuum))
         self.assertIn("rig 'bench': ok", good.stdout)
         self.assertIn("rig 'vacuum_bench': ok", self.softgrip("check", *vacuum).stdout)
+        self.assertRegex(self.softgrip("check", "config/rig.yaml", *vacuum, expect=3).stderr,
+                         r"allows 0 to 60 kPa.* \(rig file config/rig.yaml\)")
         self.write("bad.yaml", "name: bad\nsource: x\nvalve:\n  - transport_delay: {delay: 1}\nactuatr: []\n")
         bad = self.softgrip("check", "bad.yaml", "--json", expect=3)
         report = json.loads(bad.stdout)
@@ -113,6 +118,14 @@ class Offline(bench.BenchTest):
         refused(3, "--channels", "9")
         with socket.create_server(("127.0.0.1", 0)) as taken:
             self.assertIn("cannot listen", refused(4, "--tcp", taken.getsockname()[1]))
+        model = self.folder / "config/models/bench_twin.yaml"
+        self.assertIn("--model was given 3 times, but the rig has 2 channels", refused(2, "--model", model, "--model", model))
+
+    def test_a_server_confirms_a_checked_configuration(self):
+        for server, config in ((web.SOFTGRIP_WEB, "config/web.yaml"), (plc.SOFTGRIP_PLC, "config/plc.yaml")):
+            done = subprocess.run([server, "--config", config, "--check"], cwd=self.folder, capture_output=True, text=True,
+                                  timeout=bench.PATIENCE_S, check=True)
+            self.assertEqual(done.stdout, f"{config}: ok\n")
 
 
 class Online(bench.BenchTest):

@@ -1,6 +1,7 @@
 // softgrip-plc: connects PLCs and robot controllers to softgripd over Modbus TCP.
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,7 +27,10 @@ ExitCode run(const tools::GatewayOptions& options) {
   if (!settings) return settings.error();
   if (!options.socket.empty()) settings->socket = options.socket;
   if (options.port) settings->port = *options.port;
-  if (options.check) return ExitCode::done;
+  if (options.check) {
+    std::printf("%s: ok\n", options.config.c_str());
+    return ExitCode::done;
+  }
   Descriptor signals = tools::take_server_signals();
   auto listener = net::listen_tcp(settings->address, settings->port);
   if (!listener) return tools::fail(ExitCode::io, listener.error());

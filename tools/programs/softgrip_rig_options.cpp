@@ -192,6 +192,13 @@ tl::expected<Setup, ExitCode> make_setup(const Options& options) {
   if (!setup) return setup;
   if (const auto code = place(options, *setup)) return tl::unexpected{*code};
   simulation::EmulatorSettings& emulator = setup->emulator;
+  const std::size_t channels = emulator.wiring.size();
+  if (options.models.size() > 1 && options.models.size() != channels) {
+    return tl::unexpected{fail(ExitCode::usage, "--model was given " + std::to_string(options.models.size()) +
+                                                    " times, but the rig has " + std::to_string(channels) +
+                                                    (channels == 1 ? " channel" : " channels") +
+                                                    ": give 1 model, or 1 model per channel")};
+  }
   for (std::size_t i = 0; i < emulator.modules.size(); ++i) {
     simulation::EmulatedModule& module = emulator.modules[i];
     if (options.unit) module.unit = static_cast<std::uint8_t>(*options.unit + i);

@@ -62,7 +62,10 @@ ExitCode run(const Options& options) {
     if (!loaded) return tools::fail(ExitCode::input_refused, loaded.error());
     tokens = std::move(*loaded);
   }
-  if (options.check) return ExitCode::done;
+  if (options.check) {
+    std::printf("%s: ok\n", options.config.c_str());
+    return ExitCode::done;
+  }
   if (const std::size_t available = max_connections_for(settings->max_connections, descriptor_limit());
       available < settings->max_connections) {
     std::fprintf(stderr,
