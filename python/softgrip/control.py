@@ -290,7 +290,7 @@ class SimulatedBoard(Board):
             raise BusError(status, detail)
 
     def exchange(self, commands: Sequence[float], deadline: float = 1) -> tuple[Reading, ...]:
-        values = _vector("commands", commands, "kPa").tolist()
+        values = [float(value) for value in _vector("commands", commands, "kPa")]
         status, detail, readings = self._core.exchange(values, _number("deadline", deadline, "s"))
         if status != "ok":
             raise BusError(status, detail)
