@@ -170,7 +170,7 @@ def main():
         lines = [folder_lines(product(root)) for root in args.checkouts]
         names = sorted(set().union(*lines), key=lambda name: lines[-1][name] - lines[0][name])
         print()
-        print_table("lines in folder", versions, [(f"`{name}`", [each[name] for each in lines]) for name in names])
+        print_table("lines in folder", versions, [(name, [each[name] for each in lines]) for name in names])
     if args.names:
         for name, counts in zip(versions, counted):
             for what, _, places in counts:
