@@ -210,7 +210,7 @@ TEST(Identify, ParametersThatTheLogDoesNotDetermineHaveWideIntervals) {
   }
   for (const std::string& name : result->loose.front().names)
     EXPECT_FALSE(find(all, name).identifiable) << name;
-  EXPECT_EQ(find(result->combinations, "levelling_growing_per_kpa").note.find("fixed"), std::string::npos);
+  EXPECT_EQ(find(result->combinations, "saturation_growing_per_kpa").note.find("fixed"), std::string::npos);
 }
 
 TEST(Identify, ASensorsZeroIsEstimated) {
