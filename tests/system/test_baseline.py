@@ -125,11 +125,13 @@ class Baseline(bench.BenchTest):
 
     def test_invalid_arguments_are_rejected_before_any_motion(self):
         free = self.simulated()
+        (self.folder / "old").mkdir()
+        self.write("old/baseline.json", "{}")
         for arguments, code, why in (
                 (["--rig", free, "--out", "base"], 2, "the rig has 2 channels"),
                 (["--rig", free, "--rig-channel", "middle", "--out", "base"], 2, "no channel 'middle'"),
                 (["--rig", free, "--rig-channel", "left", "--out", "config"], 5, "config already exists"),
-                (["--data", "config/rig.yaml", "--out", "config/models"], 5, "config/models already exists"),
+                (["--data", "config/rig.yaml", "--out", "old"], 5, "old already exists"),
                 (["--rig", free, "--rig-channel", "left"], 2, "--out is required"),
                 (["--rig", free, "--data", "log.csv", "--out", "base"], 2, "excludes"),
                 (["--rig", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),

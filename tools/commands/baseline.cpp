@@ -244,6 +244,14 @@ ExitCode checked_again(BaselineOptions options) {
   return holds ? ExitCode::done : ExitCode::not_acceptable;
 }
 
+/// Returns true if the output folder contains a baseline or, before a motion, any other file.
+bool is_occupied(const BaselineOptions& options) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  if (options.rig.empty()) return fs::exists(fs::path(options.out) / "baseline.json", none);
+  return fs::exists(options.out, none) && !fs::is_empty(options.out, none);
+}
+
 ExitCode run(const BaselineOptions& options, const std::vector<std::string>& call) {
   if (options.data.empty() && options.rig.empty()) {
     if (options.check.size() == 1) return checked_again(options);
@@ -255,8 +263,7 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
   inputs.insert(inputs.end(), options.check.begin(), options.check.end());
   inputs.insert(inputs.end(), {options.rig, options.gauge, options.model});
   if (const auto code = refuse_overwriting(files_in(options.out, baseline_files()), inputs)) return *code;
-  std::error_code none;
-  if (std::filesystem::exists(options.out, none) && !std::filesystem::is_empty(options.out, none))
+  if (is_occupied(options))
     return fail(ExitCode::state_refused,
                 options.out + " already exists and is not changed: give the name of a new folder");
   auto runs = options.rig.empty() ? recorded(options) : played(options);

@@ -36,7 +36,7 @@ struct BaselineContents {
 /// number.
 [[nodiscard]] std::vector<std::string> baseline_files();
 
-/// Writes the baseline folder, which must not exist or must be empty. A new folder appears completely or not
+/// Writes the baseline folder, which must not contain a baseline. A new folder appears completely or not
 /// at all. Ctrl-C takes effect only after the folder is written. Returns the text of baseline.json.
 /// @param about  further members of baseline.json.
 [[nodiscard]] tl::expected<std::string, std::string> write_baseline(const std::string& folder,
