@@ -107,7 +107,7 @@ enum class FingerState : std::uint8_t {
 [[nodiscard]] const char* name_of(FingerState state);
 
 struct FingerHealth {
-  std::string finger;
+  std::string finger;  ///< name of the finger; empty: the recordings name no finger
   FingerState state = FingerState::learning;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< output unit of the finger, which replaces mm in
                                                           ///< the units of the indicators
@@ -127,6 +127,11 @@ struct FingerHealth {
   /// it.
   [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
 };
+
+/// Returns the name of the finger for a sentence; "the finger" if it has no name.
+[[nodiscard]] inline std::string name_in_text(const FingerHealth& health) {
+  return health.finger.empty() ? "the finger" : health.finger;
+}
 
 /// Returns the indicators that have an active alarm in the same direction at all fingers, so that a common
 /// cause is likely. The result is empty for fewer than two fingers.

@@ -216,7 +216,7 @@ std::string settling_command(const std::string& baseline) {
 
 sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, const HealthSource& source) {
   const bool alarm = health.state == FingerState::alarm;
-  sysid::Page page("Health of " + health.finger, health_sentence(health, suspicion),
+  sysid::Page page("Health of " + name_in_text(health), health_sentence(health, suspicion),
                    alarm                                   ? sysid::Tone::bad
                    : health.state == FingerState::learning ? sysid::Tone::doubtful
                                                            : sysid::Tone::good);

@@ -103,9 +103,11 @@ std::vector<SkippedRun> without_baseline(const std::vector<ScoredRun>& runs, Bas
   for (const auto& [finger, names] : recordings) {
     const std::string count =
         std::to_string(names.size()) + (names.size() == 1 ? " recording" : " recordings");
-    skipped.push_back(
-        {*names.rbegin(),
-         "there is no baseline of `" + finger + "`, so its readings in " + count + " are not used", finger});
+    skipped.push_back({*names.rbegin(),
+                       "there is no baseline of " +
+                           (finger.empty() ? "a finger without a name" : document::in_backticks(finger)) +
+                           ", so its readings in " + count + " are not used",
+                       finger});
   }
   return skipped;
 }
@@ -125,6 +127,7 @@ document::Problems unknown_fingers(const HealthQuestion& question, const std::ve
   for (const ScoredRun& run : runs) known.insert(run.finger);
   if (const auto baseline = read_baseline(question.baseline); baseline && !baseline->channel.empty())
     known.insert(baseline->channel);
+  known.erase("");
   const std::vector<std::string> names(known.begin(), known.end());
   document::Problems problems;
   for (const Note& note : question.notes) {

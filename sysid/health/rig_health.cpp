@@ -54,7 +54,7 @@ std::string change_text(sysid::HealthNumber number, double change, model::Output
 }
 
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
-  return "Since " + health.points[unclear.since].label + ", the difference between " + health.finger +
+  return "Since " + health.points[unclear.since].label + ", the difference between " + name_in_text(health) +
          " and " + with_commas(unclear.beside) +
          " has changed: " + change_text(unclear.number, unclear.change, health.output_unit) +
          ". The indicators of the fingers do not yet show which finger has changed.";

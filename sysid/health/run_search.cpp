@@ -57,13 +57,6 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
                               "the recorder writes one recording per sequence)"});
     return;
   }
-  if (recording->channels.front().channel.empty()) {
-    scores.skipped.push_back(
-        {name,
-         "this is not a recording: the log has no column `channel`, so the finger is "
-         "unknown. Give the folder of a recording that softgripd or `softgrip run` wrote"});
-    return;
-  }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
     const FingerBase* const base = base_of(finger);

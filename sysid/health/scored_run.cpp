@@ -27,7 +27,6 @@ std::vector<ScoredRun> read_scores(std::string_view text) {
     if (!line.is_object()) continue;
     ScoredRun run{json_text(line, "run"),    json_text(line, "finger"),   json_text(line, "started_at"),
                   json_text(line, "recipe"), json_text(line, "baseline"), {}};
-    if (run.finger.empty()) continue;
     for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
       const Json& value = json_member(line, sysid::health_number_infos[i].id);
       if (value.is_number()) run.score.values[i] = value.get<double>();

@@ -37,7 +37,7 @@ inline constexpr const char* scores_file = "health-scores.jsonl";
 /// of earlier days.
 [[nodiscard]] tl::expected<std::string, std::string> earlier_scores(const std::string& path);
 /// Reads the lines of the file of the scores. A line that is incomplete, for example after a power failure,
-/// is skipped. A line without a finger is skipped too: earlier versions scored logs of unknown fingers.
+/// is skipped.
 [[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
 /// Returns the scores of a run as one line of the file, with a line break at the end.
 [[nodiscard]] std::string line_of(const ScoredRun& run);

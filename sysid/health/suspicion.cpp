@@ -117,10 +117,10 @@ Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChang
 std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion) {
   const std::vector<HealthAlarm> alarms = health.standing();
   if (health.state == FingerState::learning)
-    return "There are too few grips to determine the reference values of " + health.finger + ".";
-  if (alarms.empty()) return "No indicator has changed at " + health.finger + ".";
-  std::string sentence =
-      health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
+    return "There are too few grips to determine the reference values of " + name_in_text(health) + ".";
+  if (alarms.empty()) return "No indicator has changed at " + name_in_text(health) + ".";
+  std::string sentence = (health.finger.empty() ? "The finger" : health.finger) + " has changed since " +
+                         health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i)
     sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change, health.output_unit);
   if (suspicion.suspects.empty()) return sentence + ". No known cause has this combination of changes.";

@@ -54,15 +54,6 @@ class LibraryAndCommand : public testing::Test {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
     return text_of(output);
   }
-  /// Writes a copy of a log with the column `channel`, and returns the path of the copy.
-  [[nodiscard]] std::string recording_of(const std::string& log) const {
-    std::ifstream rows(path(log));
-    std::ofstream copy(path("left_" + log));
-    bool first = true;
-    for (std::string row; std::getline(rows, row); first = false)
-      copy << row << (first ? ",channel" : ",left") << '\n';
-    return path("left_" + log);
-  }
   /// Removes the keys `without` from the JSON and returns the result. The values of these keys differ from
   /// call to call.
   static Json plain(const std::string& text, std::initializer_list<const char*> without) {
@@ -213,8 +204,7 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
 TEST_F(LibraryAndCommand, HealthResultsAreIdentical) {
   run("baseline --data " + path("one.csv") + " " + path("two.csv") + " --model " + model_ + " --out " +
       path("base"));
-  const std::vector<std::string> recordings{recording_of("one.csv"), recording_of("two.csv"),
-                                            recording_of("three.csv")};
+  const std::vector<std::string> recordings{path("one.csv"), path("two.csv"), path("three.csv")};
   const Json expected =
       plain(run("health " + recordings[0] + " " + recordings[1] + " " + recordings[2] + " --baseline " +
                 path("base") + " --points run --json --out " + path("health")),
@@ -228,7 +218,7 @@ TEST_F(LibraryAndCommand, HealthResultsAreIdentical) {
   EXPECT_EQ(plain(found.json, {"made", "made_unix_s"}), expected);
   EXPECT_EQ(text_of(options.scores), text_of(path("health/health-scores.jsonl")));
   ASSERT_EQ(found.fingers.size(), 1U);
-  EXPECT_EQ(found.fingers[0].html, text_of(path("health/health-left.html")));
+  EXPECT_EQ(found.fingers[0].html, text_of(path("health/health.html")));
   EXPECT_EQ(found.fingers[0].points.size(), 3U);
   ASSERT_EQ(found.fingers[0].indicators.size(), 9U);
   EXPECT_EQ(found.fingers[0].indicators[0].values.size(), 3U);
@@ -242,13 +232,11 @@ TEST_F(LibraryAndCommand, HealthResultsAreIdentical) {
 
 TEST_F(LibraryAndCommand, HealthThrowsForInvalidInputAndOnCancellation) {
   run("baseline --data " + path("one.csv") + " --model " + model_ + " --out " + path("base"));
-  const std::vector<std::string> recordings{recording_of("one.csv")};
+  const std::vector<std::string> recordings{path("one.csv")};
   EXPECT_THROW((void)health({}, path("base")), InvalidArgument);
   EXPECT_THROW((void)health(recordings, ""), InvalidArgument);
   EXPECT_THROW((void)health(recordings, path("base"), {.false_alarm_points = 19}), InvalidArgument);
   EXPECT_THROW((void)health(recordings, path("nothing")), FileError);
-  EXPECT_THROW((void)health({path("one.csv")}, path("base")), Refused)
-      << "a log without the name of a finger";
   EXPECT_THROW((void)health(recordings, path("base"), {.notes = path("nothing")}), FileError);
   EXPECT_THROW((void)health(recordings, path("base"), {.scores = path("base")}), FileError);
   std::stop_source stop;

@@ -51,12 +51,6 @@ class Angles(bench.BenchTest):
         with open(self.folder / target, "w", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
 
-    def name_finger(self, log):
-        """Adds the column `channel`, which `softgrip health` needs."""
-        path = self.folder / log
-        names, *rows = path.read_text().splitlines()
-        path.write_text("\n".join([f"{names},channel", *(f"{row},left" for row in rows)]) + "\n")
-
     def in_degrees(self, model):
         name = "deg_" + model.rsplit("/", 1)[1]
         self.write(name, "output_unit: deg\n" + self.read(model))
@@ -161,7 +155,6 @@ class Angles(bench.BenchTest):
                               20 + run, "--out", "run.csv")
                 runs.append(f"{unit}/run{run:02}.csv")
                 self.rename("run.csv", runs[-1], column, 0.7 if run > 8 else 1)
-                self.name_finger(runs[-1])
             model = self.in_degrees(TWIN) if unit == "deg" else TWIN
             said = self.softgrip("baseline", "--data", f"{unit}/tp1.csv", "--check", runs[0], "--model", model, "--out",
                                  f"{unit}/base", timeout_s=170).stdout
@@ -177,15 +170,14 @@ class Angles(bench.BenchTest):
         finger = healths["deg"]["fingers"][0]
         self.assertEqual(finger["output_unit"], "deg")
         self.assertIn("gain_mm", [alarm["number"] for alarm in finger["alarms"]])
-        for text in (said, again, health, words_of(self.read("deg/health/health-left.html"))):
+        for text in (said, again, health, words_of(self.read("deg/health/health.html"))):
             self.assertEqual(re.findall(r".{0,40}(?: mm\b|\[mm).{0,20}", text), [])
             self.assertRegex(text, r"\d deg\b")
 
     def test_health_rejects_a_recording_in_another_unit_than_the_baseline(self):
         self.softgrip("baseline", "--data", "deg/tp1.csv", "--model", self.in_degrees(TWIN), "--out", "base")
-        self.name_finger("mm/tp1.csv")
         done = self.softgrip("health", "mm/tp1.csv", "--baseline", "base", expect=3)
-        self.assertIn("the readings of the recording are in mm, but the baseline of `left` is in deg", done.stderr)
+        self.assertIn("the readings of the recording are in mm, but the baseline of `` is in deg", done.stderr)
 
     def test_logs_of_two_units_are_refused_with_file_and_line(self):
         done = self.softgrip("identify", "--data", "mm/tp1.csv", "deg/sp2.csv", "--out", "out", expect=3)

@@ -151,8 +151,6 @@ class Health(bench.BenchTest):
         self.assertIn("is not a baseline", refused(3, self.healthy[0], "--baseline", self.folder))
         self.assertEqual(refused(4, *self.healthy, "--baseline", "nosuch"), "softgrip: nosuch does not exist\n")
         self.assertIn("the folder contains no recordings", refused(3, self.folder, "--baseline", self.baseline))
-        self.write("log.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1,1,1\n0.2,2,2\n0.3,3,3\n")
-        self.assertIn("log.csv is skipped: this is not a recording", refused(3, "log.csv", "--baseline", self.baseline))
         self.write("lft.yaml", "notes:\n  - {date: 2026-08-03, finger: lft, action: x}\n")
         misspelled = refused(3, *self.healthy, "--baseline", self.baseline, "--notes", "lft.yaml")
         self.assertIn("lft.yaml:2:", misspelled)

@@ -58,7 +58,8 @@ ExitCode refuse_inputs(const health::HealthRefusal& refusal) {
 
 void print(const health::JudgedFinger& finger) {
   const health::FingerHealth& health = finger.health;
-  std::printf("%s: %s\n", health.finger.c_str(), health_sentence(health, finger.suspicion).c_str());
+  const std::string prefix = health.finger.empty() ? "" : health.finger + ": ";
+  std::printf("%s%s\n", prefix.c_str(), health_sentence(health, finger.suspicion).c_str());
   for (const health::HealthAlarm& alarm : health.standing()) {
     std::printf("  detected %s, %zu grips after the change began: %s\n",
                 health.points[alarm.noticed].label.c_str(), alarm.grips,
@@ -81,7 +82,8 @@ tl::expected<void, std::string> write_results(const std::string& out, const heal
   };
   if (auto written = write(health::scores_file, rig.scores); !written) return written;
   for (const health::JudgedFinger& finger : rig.fingers) {
-    const std::string page = "health-" + finger.health.finger + ".html";
+    const std::string page =
+        finger.health.finger.empty() ? "health.html" : "health-" + finger.health.finger + ".html";
     if (auto written = write(page, health_page(finger.health, finger.suspicion, finger.source).to_html());
         !written)
       return written;

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/sha256.h"
 #include "model/file/model_file.h"
+#include "sysid/health/health_page.h"
 #include "sysid/health/health_result.h"
 #include "tests/sysid/simulated.h"
 
@@ -133,17 +134,30 @@ TEST_F(Recorded, AMissingBaselineIsAnError) {
   EXPECT_FALSE(other.error().baselines[0].unreadable);
 }
 
-TEST_F(Recorded, AnEmptyFolderAndALogWithoutAFingerAreSkipped) {
+TEST_F(Recorded, AnEmptyFolderIsReported) {
   write("recordings/health/health.json", "{}");
-  write("log.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1,1,1\n0.2,2,2\n0.3,3,3\n");
-  HealthQuestion asked = question();
-  asked.recordings.push_back(at("log.csv"));
-  const auto found = recorded_health(asked);
+  const auto found = recorded_health(question());
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->fingers.empty());
-  ASSERT_EQ(found->skipped.size(), 2U);
+  ASSERT_EQ(found->skipped.size(), 1U);
   EXPECT_EQ(found->skipped[0].why, "the folder contains no recordings");
-  EXPECT_NE(found->skipped[1].why.find("not a recording"), std::string::npos) << found->skipped[1].why;
+}
+
+TEST_F(Recorded, ALogThatNamesNoFingerIsScored) {
+  std::string log = rows("", 20);
+  log.replace(log.find("channel,"), 8, "");
+  for (std::size_t at = log.find(",,"); at != std::string::npos; at = log.find(",,")) log.erase(at, 1);
+  write("log.csv", log);
+  HealthQuestion asked = question();
+  asked.recordings = {at("log.csv")};
+  const auto found = recorded_health(asked);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->skipped.empty()) << found->skipped[0].why;
+  ASSERT_EQ(found->fingers.size(), 1U);
+  EXPECT_EQ(found->fingers[0].health.finger, "");
+  EXPECT_EQ(health_sentence(found->fingers[0].health, found->fingers[0].suspicion),
+            "There are too few grips to determine the reference values of the finger.");
+  EXPECT_EQ(read_scores(found->scores).size(), 1U);
 }
 
 TEST_F(Recorded, ANoteAboutAnUnknownFingerIsRefused) {
