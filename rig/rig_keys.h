@@ -12,7 +12,7 @@ using document::Keys;
 /// Largest raw number of a converter of this computer.
 inline constexpr double largest_raw = (1 << 24) - 1;
 
-/// Range of pressures at a valve or in its line [kPa].
+/// Permitted values in a rig file for a pressure at a valve or in its line [kPa].
 inline constexpr document::Range line_pressure_kpa{-200, 10'000};
 
 /// The keys of each map of a rig file; rig_tables() shows the map to which each key belongs. A key without a

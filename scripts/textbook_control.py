@@ -186,7 +186,7 @@ def page(results, frequencies_hz, command, version):
              f"The study contains {len(results)} simulated fingers. The amplitude of the sines is 25 % of the displacement span of the finger. The standard deviation of the sensor noise is "
              f"{NOISE_MM} mm. The RMS error includes the sensor noise, so no controller can have an RMS error below {NOISE_MM} mm.", "",
              "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median of all fingers | "
-             "error of the best PID / error of identified model and PID, smallest value of all fingers | error of the best PID / error of identified model and PID without the sensor noise, median of all fingers | error of the best PID / error of the scheme of the paper, median of all fingers |", "|---|---|---|---|---|---|---|---|"]
+             "error of the best PID / error of identified model and PID, smallest value of all fingers | ratio of the errors after subtraction of the sensor noise, best PID to identified model and PID, median of all fingers | error of the best PID / error of the scheme of the paper, median of all fingers |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
         median = [statistics.median(r["errors_mm"][hz, "identified"] for r in results),
                   statistics.median(best_pid(r, hz) for r in results),

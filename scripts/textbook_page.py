@@ -175,7 +175,7 @@ The diagnosis starts from a plain Bouc-Wen model of a different finger (`tests/b
 commissioned`, the diagnosis starts from a model that `softgrip identify --structure auto` has fitted to different logs of
 the same finger, without the effect. A cause is *found* if it is named or is an alternative of a named cause, regardless of the verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if the finger contains
 neither this cause nor one of its alternatives. The held-out error of `identify` is the error of `softgrip identify
---structure auto` on interleaved blocks. The held-out error of the model of the diagnosis is the error on the held-out
+--structure auto` on blocks of the log that were left out of the fit. The held-out error of the model of the diagnosis is the error on the held-out
 blocks of the diagnosis. If the logs contain a measured pressure, this pressure is the input of the models (`--drive
 measured`). For logs without a measured pressure, the commanded pressure is the input of the models. With a measured pressure, the diagnosis finds
 causes in the valve by a comparison of the measured with the commanded pressure."""

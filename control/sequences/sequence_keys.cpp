@@ -93,12 +93,14 @@ void declare_steps(SequenceKeys& keys) {
   keys.verify = {required("by", &Verify::by, verify_by_names, "evidence of a part"),
                  required("window_s", &Verify::window_s, window_s,
                           "time for which the evidence must be present without interruption")};
-  keys.verify_position = {
-      optional("displacement_min_mm", &Verify::displacement_min_mm, mm, "lowest displacement with a part"),
-      optional("displacement_max_mm", &Verify::displacement_max_mm, mm, "highest displacement with a part")};
-  keys.verify_pressure = {
-      optional("pressure_max_kpa", &Verify::pressure_max_kpa, kpa, "highest pressure with a part"),
-      optional("pressure_min_kpa", &Verify::pressure_min_kpa, kpa, "lowest pressure with a part", "none")};
+  keys.verify_position = {optional("displacement_min_mm", &Verify::displacement_min_mm, mm,
+                                   "lower limit of the displacement when a part is held"),
+                          optional("displacement_max_mm", &Verify::displacement_max_mm, mm,
+                                   "upper limit of the displacement when a part is held")};
+  keys.verify_pressure = {optional("pressure_max_kpa", &Verify::pressure_max_kpa, kpa,
+                                   "upper limit of the pressure when a part is held"),
+                          optional("pressure_min_kpa", &Verify::pressure_min_kpa, kpa,
+                                   "lower limit of the pressure when a part is held", "none")};
   keys.hold_time = {{"until", "`release`", "none", "in place of `hold_s`: hold until a release is requested"},
                     optional("hold_s", &Step::hold_s, long_s, "duration of the step", "none")};
   keys.hold = {required("reverify_every_s", &Step::reverify_every_s, window_s, "interval of verifications"),

@@ -19,7 +19,8 @@ void TripInput::change(bool trips, Nanoseconds at) noexcept {
   known_ = true;
   asks_ = trips;
   since_ = at;
-  // After any edge, a line at its clear level is suspect, even if the opposite edge was lost.
+  // Stores the time of the first edge since the line was last steady, for edges in both directions. A line
+  // that is clear now may have been at its trip level, because the edge to the trip level can be lost.
   if (suspect_ == never) suspect_ = at;
 }
 

@@ -206,7 +206,7 @@ drivers::BusStatus SimulatedBoard::exchange(std::span<const double> commands_kpa
   }
   parts.act_until(now);
   if (!parts.connected)
-    return parts.say(drivers::BusStatus::disconnected, "the simulated bus has no session");
+    return parts.say(drivers::BusStatus::disconnected, "no connection to the simulated board is open");
   if (parts.bus != drivers::BusStatus::ok) {
     parts.connected = !ends_session(parts.bus);
     return parts.say(parts.bus, "simulated");

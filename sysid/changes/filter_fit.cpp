@@ -20,8 +20,8 @@ constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
 using Factor = Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower>;
 
-/// A bin that contains a reading, stated by its record, its index in this record, and its cross-validation
-/// unit.
+/// A bin that contains a reading: the index of its record, the index of the bin in this record, and the
+/// cross-validation unit of the bin.
 struct Row {
   std::size_t record = 0, bin = 0, unit = 0;
 };

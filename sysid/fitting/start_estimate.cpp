@@ -128,8 +128,8 @@ class StartSearch {
     return trial;
   }
 
-  /// Estimates offset and unsettled creep by least squares with priors, for the reversals of the pressure in
-  /// `start`.
+  /// Estimates the offset and the unsettled creep by least squares. The unsettled creep has a prior, and the
+  /// offset has none. The reversals of the pressure before the log are those in `start`.
   [[nodiscard]] Trial with_creep(StartState start, const Trust& trust) const {
     const Eigen::VectorXd y = unexplained(start);
     const double weight = trust.independent / (static_cast<double>(y.size()) * trust.mean_square_mm2);

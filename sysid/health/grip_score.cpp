@@ -28,7 +28,8 @@ constexpr double still_per_s = 0.01;
 /// The loop width is computed only from a return with at least this speed [share of the displacement at full
 /// pressure, per second]. Slower samples are creep towards rest.
 constexpr double returning_per_s = 0.05;
-/// An indicator is computed only if its samples cover at least this duration [s].
+/// Shortest durations of the samples of an indicator, for each part of the recording [s]. With fewer samples,
+/// the indicator is not computed.
 constexpr double least_rest_s = 0.1;
 constexpr double least_motion_s = 0.5;
 constexpr double least_return_s = 0.03;

@@ -41,7 +41,8 @@ class Baselines {
     const fs::path own = fs::path(folder_) / finger;
     return !finger.empty() && is_there(own / "baseline.json") ? own.string() : folder_;
   }
-  /// Returns the names of the fingers that have an own baseline: the names of the folders in DIR.
+  /// Returns the names of the fingers that have their own baseline: the folders in DIR that contain
+  /// baseline.json.
   [[nodiscard]] std::set<std::string> own() const {
     std::set<std::string> fingers;
     std::error_code unreadable;

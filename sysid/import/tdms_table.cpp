@@ -113,7 +113,7 @@ class TdmsReader {
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
     if ((flags & is_daqmx) != 0) refuse(at, has_daqmx);
     if (raw > next) refuse(at, "declares more bytes of metadata than the segment contains");
-    if (raw > size && at == 0) refuse(at, "is cut off in its metadata");
+    if (raw > size && at == 0) refuse(at, "ends before the end of its metadata");
     if (!refused.empty()) return at;
     if (raw > size) {
       leave_out_segment(at, "in its metadata");

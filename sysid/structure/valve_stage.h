@@ -42,8 +42,8 @@ using ValveParts = std::bitset<valve_part_count>;
 
 struct ValveStage {
   double delay_s = 0;
-  double band_kpa = 0;  ///< dead band: change of the command after a reversal to which the valve does not
-                        ///< respond
+  double band_kpa = 0;  ///< dead band: after a reversal, the valve does not respond until the command has
+                        ///< changed by this amount
   double filling_s = 0;
   double venting_s = 0;
   double second_s = 0;  ///< time constant of the second lag

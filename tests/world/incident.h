@@ -18,7 +18,7 @@ struct Incident {
     vent,
     release,
     acknowledge,
-    flood,          ///< a client sends `target` fault resets at the same time
+    flood,          ///< a client sends `target` acknowledge requests at the same time
     terminate,      ///< the daemon receives SIGTERM and is restarted one second later
     kill,           ///< the daemon receives SIGKILL
     pause,          ///< pauses one thread (`target`: Part) for `duration`

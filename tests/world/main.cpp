@@ -200,8 +200,10 @@ bool tell_tools(const Options& options, const Sum& sum) {
   for (std::size_t i = 1; i < tool_count; ++i) {
     const auto& [worlds, failed, met] = sum.tools[i];
     if (worlds == 0) continue;
-    fmt::print("{}: {} worlds, {} violated; {} calls, {} with a result; {} pauses, {} gaps, {} faults\n",
-               tool_names[i], worlds, failed, met.calls, met.results, met.pauses, met.gaps, met.faults);
+    fmt::print(
+        "{}: {} worlds, {} of them violated an invariant; {} calls, {} with a result; {} pauses, {} gaps, {} "
+        "faults\n",
+        tool_names[i], worlds, failed, met.calls, met.results, met.pauses, met.gaps, met.faults);
     const bool whole = met.whole() || worlds < enough_worlds;
     if (!whole)
       fmt::print("{}: one of these counts is 0, so these simulated worlds do not test this event\n",
@@ -236,10 +238,10 @@ int run(int argc, char** argv) {
   const Library library = load_library();
   const Sum sum = run_jobs(library, options);
   fmt::print(
-      "{} worlds of {} s from seed {}: {} violated\n"
-      "{} ticks, {} writes, {} incidents, {} sequences, {} times HOLDING, {} faults, {} trips of a watchdog, "
+      "{} simulated worlds of {} s, first seed {}: {} worlds violated an invariant\n"
+      "{} ticks, {} writes, {} incidents, {} sequences, {} times HOLDING, {} faults, {} watchdog trips, "
       "{} recorded rows\n"
-      "at most {} KiB more heap than after 5 s, at most {} descriptors\n",
+      "largest growth of the heap after the first 5 s: {} KiB; largest number of open descriptors: {}\n",
       sum.worlds, options.length_s, options.first, sum.failed, sum.ticks, sum.writes, sum.incidents,
       sum.sequences, sum.holdings, sum.faults, sum.trips, sum.rows, sum.growth_bytes >> 10, sum.descriptors);
   const bool eventful = tell_tools(options, sum);

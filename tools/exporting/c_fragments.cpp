@@ -124,8 +124,8 @@ static segment bouc_wen_step(bouc_wen *b, const double *v, segment in) {
 )";
 
 const std::string_view prandtl_ishlinskii = R"(
-/* Sum of play operators. The values are the largest load before the start, bend, skew and end of the envelope,
-   then threshold and weight of each operator. */
+/* Sum of play operators. v[0] is the largest load before the simulation starts. v[1], v[2] and v[3] are the bend,
+   the skew and the end of the envelope. The threshold and the weight of each operator follow. */
 typedef struct { double output, zero; int dragging, upwards; } play;
 
 static double play_dragged(double input, double from, double reach) {

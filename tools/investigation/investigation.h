@@ -23,8 +23,9 @@ namespace softgrip::tools {
 struct NotPlayed {
   bool stopped = false;  ///< true: the user has refused consent or pressed Ctrl-C
   std::string why;       ///< reason why the experiment produced no log, as a sentence
-  /// Exit code. not_acceptable: the rig had a fault during the experiment, and its outputs are safe. io: the
-  /// board cannot be reached, or another program uses the board.
+  /// Exit code of the command. not_acceptable: the experiment did not end as planned, for example because of
+  /// a fault, and the outputs are safe. io: the board cannot be reached, another program uses the board, or
+  /// the board did not confirm the safe outputs. daemon::exit_code_of() states the other codes.
   ExitCode code = ExitCode::failed;
 };
 

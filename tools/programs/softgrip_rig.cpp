@@ -71,12 +71,14 @@ void add_options(CLI::App& program, Options& options) {
       .add_option("--watchdog-s", options.watchdog_s,
                   "Timeout of the board's communication watchdog; 0: no watchdog")
       ->check(number_between(0, 86400));
-  program.add_option("--noise-mm", options.noise_mm, "Standard deviation of the displacement sensor")
+  program
+      .add_option("--noise-mm", options.noise_mm,
+                  "Standard deviation of the noise of the displacement sensor [mm]")
       ->capture_default_str()
       ->check(number_between(0, 1000));
   program
       .add_option("--pressure-noise-kpa", options.pressure_noise_kpa,
-                  "Standard deviation of the pressure monitor")
+                  "Standard deviation of the noise of the pressure monitor [kPa]")
       ->capture_default_str()
       ->check(number_between(0, 1000));
   program.add_option("--seed", options.seed, "Seed of all noise")->capture_default_str();

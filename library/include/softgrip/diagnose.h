@@ -83,11 +83,11 @@ struct Change {
                          ///< "unexplained"
   std::string sentence;  ///< the verdict in one sentence
   std::vector<std::string> warnings;  ///< warnings about the logs and the result
-  std::vector<Cause> causes;          ///< causes of the change of the finger; the first cause has the largest
-                                      ///< change
-  Unit unit = Unit::mm;               ///< unit of all displacements in the result
-  std::string json;                   ///< content of diagnosis.json that `softgrip diagnose --healthy` writes
-  std::string html;                   ///< content of report.html that `softgrip diagnose --healthy` writes
+  std::vector<Cause> causes;  ///< causes of the change of the finger; the first cause reduces the error
+                              ///< most
+  Unit unit = Unit::mm;       ///< unit of all displacements in the result
+  std::string json;           ///< content of diagnosis.json that `softgrip diagnose --healthy` writes
+  std::string html;           ///< content of report.html that `softgrip diagnose --healthy` writes
 };
 
 /// Compares later logs of a finger with logs that were recorded when the finger was healthy. The command

@@ -274,7 +274,7 @@ class SelectorUpon {
   }
 
   /// Returns true if one of two selected causes reduces the error sufficiently in addition to the other one.
-  /// @param before  losses of the structure without the cause.
+  /// @param before  losses of the structure with only the other cause.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }

@@ -369,7 +369,7 @@ TEST(FullModelFeedforward, ADisplacementOffsetInMotionCausesNoCommandJump) {
     before = last;
     last = command;
   }
-  EXPECT_LT(worst, 0.5) << "change of the command between two ticks [kPa]";
+  EXPECT_LT(worst, 0.5) << "largest difference between two consecutive changes of the command [kPa]";
 }
 
 TEST(BoucWenFeedforward, InvertsOnlyTheBoucWenBlock) {

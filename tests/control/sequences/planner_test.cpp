@@ -223,10 +223,10 @@ double processor_time_s(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// The limit for the planning time is a number of simulations of the same motion with steps of 1 ms. The test
-// measures planning and simulations in the same run, so their ratio does not depend on the speed and the load
-// of the computer. The measured ratios are 350, 1,650 and 3,350. For the third model, planning takes 1 s per
-// 10 s of motion if a simulation step takes 29 ns.
+// The limit for the planning time is a multiple of the time of one simulation of the same motion (steps of
+// 1 ms). The test measures planning and simulations in the same run, so their ratio does not depend on the
+// speed and the load of the computer. The measured ratios are 350, 1,650 and 3,350. For the third model,
+// planning takes 1 s per 10 s of motion if a simulation step takes 29 ns.
 TEST(Planner, PlanningTakesLessTimeThan4000Simulations) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;

@@ -136,7 +136,8 @@ std::string with_steps(int count) {
   return text;
 }
 
-/// Returns a grip step. Its key `verify` contains the given keys.
+/// Returns a sequence with one grip step. `verify` is inserted into the step: it is empty, or it is the text
+/// ", verify: {...}" with the leading comma.
 std::string with_verify(const std::string& verify) {
   return with_step("grip: {pressure_kpa: 5, settle_s: 0" + verify + ", timeout_s: 9, on_fail: vent}");
 }

@@ -63,7 +63,8 @@ TEST(Downstream, EqualsTheFullSimulationOfDownstreamChains) {
       whole = model::with_block(std::move(whole), blocks.back());
     }
     if (!is_downstream(blocks, base(), record)) {
-      EXPECT_STREQ(chain.back(), "ageing");  // ageing acts before the contact, so it is not downstream
+      // In the signal path, ageing comes before the contact, so {contact, ageing} is in the wrong order.
+      EXPECT_STREQ(chain.back(), "ageing");
       continue;
     }
     EXPECT_EQ(downstream(blocks, record, plain), walked(whole, record));

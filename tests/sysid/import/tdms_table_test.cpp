@@ -130,7 +130,7 @@ TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
   EXPECT_EQ(notes(blocks), "incomplete rows or blocks of values are left out: 12 bytes");
   EXPECT_EQ(blocks.account.rows, 2U);
   EXPECT_EQ(blocks.account.left_out[static_cast<std::size_t>(LeftOut::cut_off_line)], 2U);
-  EXPECT_NE(refusal(good.substr(0, 60)).find("the segment at byte 0 is cut off in its metadata"),
+  EXPECT_NE(refusal(good.substr(0, 60)).find("the segment at byte 0 ends before the end of its metadata"),
             std::string::npos);
 }
 

@@ -89,7 +89,7 @@ TEST(LinearModes, ASecondModeIsFound) {
 }
 
 TEST(LinearModes, AnInverseResponseIsFound) {
-  // The rate gain of this mode has the opposite sign of its static gain.
+  // The gain for the rate and the static gain of this mode have opposite signs.
   expect_found(with_modes({0, 1.5, 1.4, 0.3, -0.4}));
 }
 
