@@ -10,6 +10,7 @@
 #include "sysid/fitting/trajectory.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
+#include "tools/verification/verification.h"
 
 namespace softgrip::tools {
 
@@ -53,11 +54,10 @@ std::optional<ExitCode> refuse_report(const std::string& out, const std::string&
   std::vector<std::string> files = files_in(out, names);
   for (std::string& file : files_in(figures, {"figure-*"})) files.push_back(std::move(file));
   if (const auto code = refuse_overwriting(files, inputs)) return code;
-  for (const char* result : {"identify.json", "validate.json", "diagnosis.json"}) {
-    const std::string path = (std::filesystem::path(out) / result).string();
-    std::error_code error;
-    if (out.empty() || std::ranges::count(names, result) > 0 || !std::filesystem::exists(path, error))
-      continue;
+  if (out.empty()) return std::nullopt;
+  for (const ReportKind& other : report_kinds) {
+    const std::string path = (std::filesystem::path(out) / other.json).string();
+    if (std::ranges::count(names, other.json) > 0 || !is_there(path)) continue;
     return fail(ExitCode::state_refused,
                 path + " already exists: its report.html would be replaced. Name another folder with --out");
   }

@@ -33,14 +33,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = std::size_t{512} * 1024 * 1024;
 
-/// A command that can be repeated, and the name of its result file.
-struct Kind {
-  const char* command;
-  const char* json;
-};
-constexpr std::array kinds{Kind{"identify", "identify.json"}, Kind{"validate", "validate.json"},
-                           Kind{"diagnose", "diagnosis.json"}};
-
 /// Runs the program and discards its standard output. Returns its exit code, or -1 if it cannot run.
 int called(const std::string& program, std::vector<std::string> words) {
   words.insert(words.begin(), program);
@@ -108,7 +100,7 @@ class Verifier {
 
   bool read() {
     std::string names;
-    for (const Kind& kind : kinds) {
+    for (const ReportKind& kind : report_kinds) {
       names += (names.empty() ? "" : ", ") + std::string(kind.json);
       if (is_there(folder_ / kind.json)) kind_ = &kind;
     }
@@ -257,7 +249,7 @@ class Verifier {
 
   fs::path folder_;
   std::string program_;
-  const Kind* kind_ = nullptr;
+  const ReportKind* kind_ = nullptr;
   Json json_;
   std::vector<std::string> call_;
   Verification result_;
@@ -278,14 +270,19 @@ std::string text_of(const Json& value) {
   return value.is_number() ? shortest(value.get<double>()) : value.dump();
 }
 
+/// Returns true if the values are equal, or if `former` is the deprecated name of the value `present`.
+bool is_same_value(const Json& present, const Json& former) {
+  return present == former || (present == "inverse_response" && former == "wrong_way_first");
+}
+
 /// Returns true if the key is a new name of a key of the report. An earlier version wrote the report with the
-/// deprecated name only. The recomputed result contains the same value under both names.
+/// deprecated name only. The recomputed result contains the same value under both names, the deprecated name
+/// directly after the new name.
 bool is_new_name(const std::string& key, const Json& reported, const Json& recomputed) {
-  if (reported.contains(key)) return false;
-  for (const auto& [other, value] : reported.items()) {
-    if (recomputed.contains(other) && recomputed[other] == recomputed[key]) return true;
-  }
-  return false;
+  const auto at = recomputed.find(key);
+  if (reported.contains(key) || at == recomputed.end()) return false;
+  const auto next = std::next(at);
+  return next != recomputed.end() && reported.contains(next.key()) && is_same_value(*at, *next);
 }
 
 void compare_values(const std::string& where, const Json& reported, const Json& recomputed,

@@ -2,6 +2,7 @@
 // Recomputes a report of identify, validate or diagnose from the inputs that the report names.
 // Compares the results of two runs of the same command, value by value.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,15 @@
 #include "model/model.h"
 
 namespace softgrip::tools {
+
+/// A command that writes a report, and the name of its result file.
+struct ReportKind {
+  const char* command;
+  const char* json;
+};
+inline constexpr std::array report_kinds{ReportKind{"identify", "identify.json"},
+                                         ReportKind{"validate", "validate.json"},
+                                         ReportKind{"diagnose", "diagnosis.json"}};
 
 /// One value that differs between the two runs.
 struct Difference {

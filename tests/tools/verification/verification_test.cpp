@@ -182,6 +182,25 @@ TEST(Comparison, ANewNameOfAReportedKeyIsNoDifference) {
   EXPECT_EQ(places(key), std::vector<std::string>{"f.json: error_reduction_percent"});
 }
 
+TEST(Comparison, ANewNameOfAValueIsNoDifference) {
+  const Json was{{"id", "wrong_way_first"}, {"value", 2.0}};
+  const Json same{{"name", "inverse_response"}, {"id", "wrong_way_first"}, {"value", 2.0}};
+  const Json other{{"name", "at_bound"}, {"id", "wrong_way_first"}, {"value", 2.0}};
+  Comparison none{1e-6, 0, {}}, name{1e-6, 0, {}};
+  compare_json("f.json", was, same, none);
+  compare_json("f.json", was, other, name);
+  EXPECT_TRUE(places(none).empty());
+  EXPECT_EQ(places(name), std::vector<std::string>{"f.json: name"});
+}
+
+TEST(Comparison, AMissingKeyIsADifferenceAlthoughAnotherKeyHasItsValue) {
+  const Json was{{"verdict", "adequate"}, {"causes", Json::array()}};
+  const Json is{{"warnings", Json::array()}, {"verdict", "adequate"}, {"causes", Json::array()}};
+  Comparison comparison{1e-6, 0, {}};
+  compare_json("f.json", was, is, comparison);
+  EXPECT_EQ(places(comparison), std::vector<std::string>{"f.json: warnings"});
+}
+
 TEST(Comparison, ToleranceIsRelativeAndRunTimesPathsAndVersionsAreIgnored) {
   const Json was{
       {"value", 1000.0}, {"wall_s", 3}, {"software", "a"}, {"logs", {{{"path", "x"}, {"samples", 9}}}}};
