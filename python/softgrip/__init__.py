@@ -64,8 +64,8 @@ __all__ = [
     "Controller", "Diagnosis", "Estimate", "Event", "Fault", "FingerHealth", "Grip", "GripFailed", "Gripper", "Health",
     "HealthAlarm", "HealthIndicator", "Hello", "Identification", "InvalidArgument", "Inverse", "LimitedCommand", "Limits",
     "Log", "MalformedFile", "MissingFile", "Model", "ModelParameter", "NoDaemon", "NoResult", "NotAnswered", "Owned",
-    "Parameter", "Pid", "PidSettings", "Prediction", "Problem", "ProtocolError", "Reading", "Reference", "Refused", "Result", "Sequence",
-    "SequenceEnd", "SequenceRefused", "SequenceState", "SimulatedBoard", "SimulatedFinger", "SimulatedObject",
-    "SoftgripError", "State", "Status", "StopNotConfirmed", "Suspect", "UnreadableFile", "Validation", "diagnose", "health", "identify",
-    "limit", "validate",
+    "Parameter", "Pid", "PidSettings", "Prediction", "Problem", "ProtocolError", "Reading", "Reference", "Refused", "Result",
+    "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SimulatedBoard", "SimulatedFinger", "SimulatedObject",
+    "SoftgripError", "State", "Status", "StopNotConfirmed", "Suspect", "UnreadableFile", "Validation", "diagnose", "health",
+    "identify", "limit", "validate",
 ]

@@ -245,10 +245,11 @@ class Judge {
     // therefore names the causes that the later search took for granted.
     std::string given;
     for (const FittedEffect& each : found) given += (given.empty() ? "with " : " and ") + each.effect.id;
+    if (!given.empty()) given += ", ";
     const auto reject = [&](const ScoredEffect& scored, std::string_view reason) {
       for (TriedCause& tried : judged.tried) {
         if (tried.id == scored.fit.fitted.effect.id && tried.rejected.empty())
-          tried.rejected = (given.empty() ? given : given + ", ") + std::string(reason);
+          tried.rejected = given + std::string(reason);
       }
     };
     const std::string_view not_larger =

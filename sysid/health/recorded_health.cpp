@@ -113,12 +113,15 @@ std::vector<SkippedRun> without_baseline(const std::vector<ScoredRun>& runs, Bas
   return skipped;
 }
 
-std::vector<SkippedRun> empty_folders(const std::vector<std::string>& paths) {
-  std::vector<SkippedRun> skipped;
+/// Returns find_runs(paths), and adds each folder without recordings to `skipped`.
+std::vector<std::string> runs_in(const std::vector<std::string>& paths, std::vector<SkippedRun>& skipped) {
+  std::vector<std::string> runs;
   for (const std::string& path : paths) {
-    if (find_runs({path}).empty()) skipped.push_back({path, "the folder contains no recordings"});
+    const std::vector<std::string> found = find_runs({path});
+    if (found.empty()) skipped.push_back({path, "the folder contains no recordings"});
+    runs.insert(runs.end(), found.begin(), found.end());
   }
-  return skipped;
+  return runs;
 }
 
 /// Returns the problems of notes that name an unknown finger. Such a note would close no alarm.
@@ -126,9 +129,8 @@ document::Problems unknown_fingers(const HealthQuestion& question, const std::ve
                                    const Baselines& baselines) {
   std::set<std::string> known = baselines.own();
   for (const ScoredRun& run : runs) known.insert(run.finger);
-  if (const auto baseline = read_baseline(question.baseline); baseline && !baseline->channel.empty())
-    known.insert(baseline->channel);
-  known.erase("");
+  if (const auto baseline = read_baseline(question.baseline)) known.insert(baseline->channel);
+  known.erase("");  // recordings and baselines without a channel
   const std::vector<std::string> names(known.begin(), known.end());
   document::Problems problems;
   for (const Note& note : question.notes) {
@@ -180,7 +182,7 @@ tl::expected<RecordedHealth, HealthRefusal> recorded_health(const HealthQuestion
     on_recording = [&](std::size_t index, std::size_t count) {
       question.progress("recording " + std::to_string(index) + " of " + std::to_string(count));
     };
-  RunScores scores = score_runs(find_runs(question.recordings), base_of, runs, on_recording);
+  RunScores scores = score_runs(runs_in(question.recordings, all.skipped), base_of, runs, on_recording);
   if (!baselines.refused().empty()) return tl::unexpected(HealthRefusal{baselines.refused(), {}});
   for (const ScoredRun& scored : scores.runs) {
     all.scores += line_of(scored);
@@ -190,7 +192,6 @@ tl::expected<RecordedHealth, HealthRefusal> recorded_health(const HealthQuestion
     if (document::Problems unknown = unknown_fingers(question, runs, baselines); !unknown.empty())
       return tl::unexpected(HealthRefusal{{}, std::move(unknown)});
   }
-  all.skipped = empty_folders(question.recordings);
   all.skipped.insert(all.skipped.end(), scores.skipped.begin(), scores.skipped.end());
   const std::vector<SkippedRun> incomplete = without_baseline(runs, baselines);
   all.skipped.insert(all.skipped.end(), incomplete.begin(), incomplete.end());

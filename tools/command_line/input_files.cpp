@@ -38,13 +38,11 @@ std::optional<ExitCode> refuse_folder(const std::string& path, const std::string
 }
 
 tl::expected<model::Model, ExitCode> read_model(const std::string& path) {
-  if (const auto code = refuse_folder(path, "model.yaml")) return tl::unexpected(*code);
-  return read_input(path, model::load_model);
+  return read_input(path, model::load_model, "model.yaml");
 }
 
 tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path) {
-  if (const auto code = refuse_folder(path, "model.yaml")) return tl::unexpected(*code);
-  return read_input(path, model::load_rig_model);
+  return read_input(path, model::load_rig_model, "model.yaml");
 }
 
 }  // namespace softgrip::tools

@@ -31,12 +31,13 @@ namespace softgrip::tools {
 
 /// Returns the result of read(path, problems). If the file cannot be opened or is refused, prints the reason
 /// and returns the exit code.
+/// @param usual  see refuse_folder().
 template <class Read>
-auto read_input(const std::string& path, Read read)
+auto read_input(const std::string& path, Read read, const std::string& usual = "")
     -> tl::expected<typename decltype(read(path, std::declval<document::Problems&>()))::value_type,
                     ExitCode> {
+  if (const auto code = refuse_folder(path, usual)) return tl::unexpected(*code);
   if (const auto code = unreadable(path)) return tl::unexpected(*code);
-  if (const auto code = refuse_folder(path)) return tl::unexpected(*code);
   document::Problems problems;
   auto result = read(path, problems);
   if (!result) return tl::unexpected(refuse(problems));

@@ -45,6 +45,7 @@ std::vector<std::string> options_of(const CLI::App& app) {
 
 /// Returns the shortest name that begins with `word`, otherwise the most similar name; "" if there is none.
 std::string candidate_for(const std::string& word, const std::vector<std::string>& names) {
+  // One or two letters begin several names, so they do not show which name is meant.
   constexpr std::size_t shortest_beginning = 3;
   const std::string* completed = nullptr;
   for (const std::string& name : names) {

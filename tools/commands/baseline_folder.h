@@ -32,12 +32,11 @@ struct BaselineContents {
 /// Reads one file of any format and returns its content unchanged.
 [[nodiscard]] tl::expected<BaselineFile, std::string> baseline_file(const std::string& path);
 
-/// Returns the names of the files that write_baseline() writes. In a name, `*` represents a
-/// number.
+/// Returns the names of the files that write_baseline() writes. In a name, `*` represents a number.
 [[nodiscard]] std::vector<std::string> baseline_files();
 
-/// Writes the baseline folder, which must not contain a baseline. A new folder appears completely or not
-/// at all. Ctrl-C takes effect only after the folder is written. Returns the text of baseline.json.
+/// Writes the baseline folder, which must not contain a baseline. A new folder appears completely or not at
+/// all. Ctrl-C takes effect only after the folder is written. Returns the text of baseline.json.
 /// @param about  further members of baseline.json.
 [[nodiscard]] tl::expected<std::string, std::string> write_baseline(const std::string& folder,
                                                                     const BaselineContents& contents,

@@ -105,10 +105,10 @@ struct Health {
 /// Reports which fingers have changed, when each change began, and the possible causes of each change. The
 /// command `softgrip health` computes its result in the same way. Throws InvalidArgument if an argument is
 /// invalid. Throws FileError if the baseline does not exist, or if the content of the baseline, the notes or
-/// the scores is invalid. Throws
-/// Refused if no recording can be compared with the baseline. Throws Cancelled after a request through
-/// `options.stop`. @param recordings  folders of recordings, or folders that contain such folders @param
-/// baseline    folder of `softgrip baseline`. If it contains a folder with the name of a finger, the
+/// the scores is invalid. Throws Refused if no recording can be compared with the baseline. Throws Cancelled
+/// after a request through `options.stop`. @param recordings  folders of recordings, or folders that contain
+/// such folders @param baseline    folder of `softgrip baseline`. If it contains a folder with the name of a
+/// finger, the
 ///                    baseline in that folder applies to this finger
 /// @param options     control charts, maintenance records and scores
 [[nodiscard]] SOFTGRIP_API Health health(const std::vector<std::string>& recordings,
