@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "base/time.h"
 #include "daemon/loop/histogram.h"
 
 namespace softgrip::daemon {

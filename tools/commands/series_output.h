@@ -2,11 +2,13 @@
 // Writes the files that identify, validate and diagnose store beside their reports: series.csv for each log,
 // and figures.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tl/expected.hpp>
 
+#include "base/exit_code.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/fitting/score.h"
 #include "sysid/logs/log.h"
