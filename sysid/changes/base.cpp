@@ -36,8 +36,8 @@ constexpr double least_zero_share = 0.0005;
 struct Candidate {
   std::string description;
   std::optional<Regulator> regulator;
-  /// Fits the model to records whose drive is the output of the regulator. The prediction of a model without
-  /// blocks is its input.
+  /// Fits the model to records whose drive is the output of the regulator. A model without blocks predicts
+  /// the output of the regulator, or 0 if there is no regulator.
   std::function<FitPoint(const std::vector<Record>&)> fit;
 };
 
@@ -155,9 +155,9 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
   return fitted;
 }
 
-/// Selects the baseline model. The first candidate is the default. Another candidate replaces the default
-/// only if it predicts left-out runs significantly better. The regulator of a candidate is fitted to all
-/// runs. The cross-validation changes only the other parameters of the candidate.
+/// Selects the baseline model. The first candidate is the default. Each further candidate replaces the best
+/// earlier one only if it predicts left-out runs significantly better. The regulator of a candidate is fitted
+/// to all runs. The cross-validation changes only the other parameters of the candidate.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
@@ -231,8 +231,9 @@ void spread(Base& base) {
   }
   const double free = std::max(1.0, count - 1);
   base.zero_mm = count > 0 ? zeros / count : 0;
-  // With one healthy run of a finger, the spread is assumed, and the difference is that of two gains.
-  // Otherwise, the spread is estimated from the units.
+  // The displacement of a single healthy run does not show the spread of the gain between runs. Therefore a
+  // spread of at least limits::usual_gain_spread is assumed, and `free_gain` is the difference between the
+  // gains of two runs with this spread. Otherwise, the spread is estimated from the units.
   const bool is_assumed = !base.units.are_runs() && base.judged == Judged::displacement;
   base.gain_spread = std::max(is_assumed ? limits::usual_gain_spread : least_gain_spread,
                               count > 0 ? std::sqrt(gains / count) : 0);

@@ -41,7 +41,7 @@ inline constexpr double deviate_between_two_runs = limits::deviate * std::number
 
 /// A model of the healthy finger: a structure with an optional regulator and an optional filter bank.
 struct HealthyModel {
-  std::string description;  ///< description of the model
+  std::string description;
   /// Model of the finger. If the model has no blocks, the baseline model consists of a regulator, a filter
   /// bank or both.
   model::Model model;
@@ -57,7 +57,7 @@ struct Base : HealthyModel {
   Judged judged = Judged::displacement;
   Drive drive = Drive::command;
   double largest_kpa = 0;
-  double temperature_c = 20;  ///< mean temperature in the healthy logs
+  double temperature_c = 20;  ///< mean temperature in the healthy logs; 20 if it is not recorded
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
   double noise_mm = 0;        ///< standard deviation of the noise between consecutive readings
   Units units;                ///< division of the healthy records into units for cross-validation
@@ -100,8 +100,8 @@ struct BaseOptions {
                                       unsigned threads);
 
 /// Returns a copy of the record with fewer samples, for the search for changes. Each bin contains several
-/// samples. If the pressure is evaluated, a bin contains more samples than for a displacement, because a
-/// valve responds faster than a finger.
+/// samples. With the shortest bins, the sampling interval is 0.005 s for a pressure and 0.01 s for a
+/// displacement, because a valve responds faster than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
 /// Returns records whose reading is the measured pressure [kPa] and whose drive is the command.

@@ -1,7 +1,8 @@
 #pragma once
 // Reads the folder that `softgrip baseline` has written. The folder contains the healthy logs (healthy_1.csv,
-// healthy_2.csv, ...), gauge.csv, model.yaml and baseline.json. It also contains the logs of a second run
-// (second_1.csv, ...) that checked the first run. baseline.json states the origin and the hash of each file.
+// healthy_2.csv, ...), model.yaml and baseline.json. It can also contain gauge.csv, and the logs of a second
+// run (second_1.csv, ...) that checked the first run. baseline.json states the origin and the hash of each
+// file.
 
 #include <string>
 #include <vector>

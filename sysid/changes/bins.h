@@ -1,6 +1,7 @@
 #pragma once
-// Averages series over short bins, and whitens residuals with the statistics of the healthy finger. Slow
-// errors and frequent errors of the healthy finger thereby get a lower weight.
+// Averages series over short bins, and whitens residuals with the statistics of the healthy finger. Errors
+// that the healthy finger also has (slow errors, and errors that are large at its input rate) thereby get a
+// lower weight.
 
 #include <cstddef>
 #include <vector>
@@ -56,8 +57,8 @@ struct Whitener {
 /// @param order  number of previous bins in the autoregression.
 [[nodiscard]] Whitener whitener_of(Binned residual, const Binned& peak_rate, std::size_t order);
 
-/// The bins of a residual that can be whitened. Each of these bins is a row. A bin can be whitened if at
-/// least as many finite bins precede it as the autoregression has weights.
+/// The bins of a residual that can be whitened. Each of these bins is a row. A bin can be whitened if it is
+/// finite and directly follows at least as many finite bins as the autoregression has weights.
 class WhiteRows {
  public:
   struct Row {

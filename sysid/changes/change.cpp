@@ -23,8 +23,8 @@ namespace softgrip::sysid {
 namespace {
 
 /// Smallest error reduction of a reported cause, as a share of the largest error reduction in pressure or
-/// displacement. A cause below this limit may be a consequence of the cause with the largest reduction. This
-/// cause changes the input of the baseline model. The prediction for the changed input is less certain,
+/// displacement. A cause below this limit may be a consequence of the cause with the largest reduction. The
+/// latter can change the input of the baseline model. The prediction for the changed input is less certain,
 /// because the model was not fitted to such inputs.
 constexpr double beside_another = 0.02;
 

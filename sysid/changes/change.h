@@ -32,7 +32,7 @@ struct ChangeOptions {
 
 /// Size of a change, stated as a quantity that a technician can check.
 struct ChangeSize {
-  std::string what;  ///< name of the quantity: "dead time", "gain"
+  std::string what;  ///< name of the quantity: "increase of the dead time", "gain"
   double value = 0;
   std::string unit;  ///< unit of the quantity: "s", "mm" (of any output unit), "kPa" or "%"
 };
@@ -128,10 +128,10 @@ struct ChangeDiagnosis {
                                                                          const std::vector<Log>& later,
                                                                          const ChangeOptions& options = {});
 
-/// Returns the size of a change as text, for example "more dead time 0.03 s".
+/// Returns the size of a change as text, for example "increase of the dead time 0.03 s".
 [[nodiscard]] std::string size_text(const ChangeCause& cause);
 /// Returns the interval of the size in the unit of the size, for example "0.0275 .. 0.0325". Returns "-" if
-/// there is no interval.
+/// there is no interval, and "not determined by these logs" if the interval is too wide (is_determined()).
 [[nodiscard]] std::string interval_text(const ChangeCause& cause);
 
 /// Returns the verdict as one sentence for a technician.

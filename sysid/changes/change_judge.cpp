@@ -184,8 +184,9 @@ class Judge {
   }
 
   /// Returns true if the effect increases the prediction error of left-out later runs. The effect is fitted
-  /// to all runs except one and then predicts this run. The comparison ignores runs in which the effect does
-  /// not occur. For example, a run may not reach the saturation of a sensor.
+  /// to all runs except one and then predicts this run. A run in which the effect does not occur has no
+  /// influence on the result, because its two errors are equal. For example, a run may not reach the
+  /// saturation of a sensor.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
                                     const std::vector<FittedEffect>& found) const {
     PairedLosses losses;

@@ -46,7 +46,7 @@ using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& ot
 /// Moves one effect to the front of the list. It is the effect with the fewest parameters among the first
 /// effect and the effects that the data cannot separate from it. The function first compares the number of
 /// parameters that determine the shape, and then the number of all parameters. If both numbers are equal, it
-/// prefers an effect that is not ideal.
+/// prefers an effect that is not a mathematical idealisation (Effect::is_ideal).
 void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked, const Ties& ties);
 
 /// Returns one index per row of the readings: the block that contains the row. A block lasts some seconds.

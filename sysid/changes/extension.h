@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 
 /// Pressure loss d. It increases while the valve does not move and decreases while the valve moves. The
 /// equation is d' = rate p/largest - d (1/recovery + |command'|/way), where p is the pressure and `largest`
-/// the largest pressure of the healthy records.
+/// is the largest command in the record.
 struct PressureLoss {
   double rate_kpa_per_s = 0;
   double recovery_s = 5;

@@ -1,8 +1,8 @@
 #pragma once
 // Computes a bank of first-order filters of the input. The filtered signals are regressors for the residual
 // of a model of the healthy finger. If the pressure is evaluated, they are regressors for the measured
-// pressure itself. Their weights have no physical meaning. They reduce the residual, so that smaller changes
-// become significant.
+// pressure itself. Their weights have no physical meaning. The fitted filters reduce the residual, so that
+// smaller changes become significant.
 
 #include <array>
 #include <vector>

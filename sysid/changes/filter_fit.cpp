@@ -117,9 +117,8 @@ class FilterBank {
     }
   }
 
-  /// Returns the weights if the filter bank improves the predictions of the model significantly
-  /// (is_better()) and the units show that it predicts another run. Otherwise returns a result without
-  /// weights.
+  /// Returns the weights if the filter bank improves the predictions of the model significantly (is_better())
+  /// and `is_usable_` is true. Otherwise returns a result without weights.
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());

@@ -13,8 +13,8 @@
 namespace softgrip::sysid {
 
 /// Returns the disagreement about the later records beyond the largest one that is expected about another
-/// healthy run (run_to_run_factor()). If there are several alternatives, the largest value is returned. It is
-/// zero for an input like the healthy inputs, so this input permits no larger error.
+/// healthy run (run_to_run_factor()). If there are several alternatives, the largest value is returned. The
+/// result is zero for an input like the healthy inputs. The permitted error then stays unchanged.
 /// @param later  later records at the full sampling rate.
 [[nodiscard]] Disagreement added_disagreement(const Base& base, const std::vector<Record>& later);
 
