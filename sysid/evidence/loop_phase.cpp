@@ -77,8 +77,8 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   const Eigen::VectorXd target = u.tail(rows);
   const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
   const auto free = static_cast<double>(rows - 2 * order);
-  // Without this test, rounding errors would decide if past values of the command already predict the command
-  // exactly.
+  // If past values of the command predict the command exactly, only rounding errors remain. The F test of
+  // rounding errors would have no meaning.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
   return f > f_quantile(limits::strict_probability, static_cast<double>(order), free);

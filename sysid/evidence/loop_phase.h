@@ -13,12 +13,12 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if past readings improve the prediction of the command. The prediction without the readings
-/// uses past values of the command. The function applies Granger's test with three past samples of each
-/// series at the level limits::strict_probability. If the command was planned before the run, past readings
-/// do not improve its prediction.
+/// Returns true if past readings improve the prediction of the command from its own past values. The function
+/// applies Granger's test with three past samples of each series at the level limits::strict_probability. The
+/// result is false for a command whose noise is below limits::planned_roughness, because such a command was
+/// planned before the run.
 /// @param command, reading  series of equal length. Samples with a NaN in one of the series are skipped. With
-/// fewer than 50 remaining samples, the result is false.
+/// fewer than 53 remaining samples, the result is false.
 [[nodiscard]] bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading);
 
 /// Returns a measure of symmetry of the cross-correlation: 1 if it is odd, 0 if it is even. The measure is

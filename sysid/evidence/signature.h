@@ -20,7 +20,7 @@ enum class Appears {
   moving,
 };
 
-/// Input of the finger in one bin, and its predicted motion.
+/// Input of the finger and predicted displacement in one bin.
 struct OperatingPoint {
   double pressure_kpa = 0;    ///< pressure that is the input of the finger
   double rate_kpa_per_s = 0;  ///< rate of `pressure_kpa` after a peak detector (see rates_of()), >= 0
@@ -32,8 +32,9 @@ struct OperatingPoint {
 [[nodiscard]] std::vector<double> rates_of(const Record& record);
 
 /// Returns one value per bin: true if a cause with this condition must have an effect in the bin. A pressure
-/// or rate counts as zero if it is at most limits::rest_share of its range. A displacement or rate counts as
-/// high if it is in the upper half of its range.
+/// counts as zero if it exceeds the lowest pressure by at most limits::rest_share of the pressure range. A
+/// rate counts as zero if it is at most limits::rest_share of the highest rate, and as fast if it exceeds
+/// half the highest rate. A displacement counts as large in the upper half of its range.
 [[nodiscard]] std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions);
 
 /// Returns advice for the user if the data do not meet the condition `appears`. The advice describes a

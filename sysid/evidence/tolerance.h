@@ -30,11 +30,12 @@ class Tolerance {
   /// @param more  increase of the expected loss per row because of an unfamiliar input.
   Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more = 0);
 
-  /// Returns the mean error reduction by a cause in data without a change, >= 0.
+  /// Returns the mean error reduction by a cause in data without a change. Negative reductions count as 0.
+  /// For a cause that the units do not contain, returns the mean over all causes.
   [[nodiscard]] double usual(std::string_view cause) const;
   /// Returns the error reduction per row above which a cause counts as a change. The threshold is
-  /// run_to_run_factor() times the larger one of two values: the mean reduction by this cause, and the mean
-  /// reduction by all causes. The increase `more` is added.
+  /// run_to_run_factor() times a sum. The sum consists of the increase `more` and the larger one of two
+  /// values: the mean reduction by this cause, and the mean reduction over all causes.
   [[nodiscard]] double of(std::string_view cause) const;
 
  private:

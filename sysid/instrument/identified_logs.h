@@ -1,7 +1,7 @@
 #pragma once
-// Identifies a model from logs, and validates a model with logs. Each function first removes outliers from
-// the readings. The results contain warnings about the data. `softgrip identify`, `softgrip validate` and the
-// library call these functions.
+// Identifies a model from logs, and validates a model with logs. Both functions first remove outliers from
+// the readings. Both results contain warnings about the data. `softgrip identify`, `softgrip validate` and
+// the library call these functions.
 
 #include <cstddef>
 #include <cstdint>

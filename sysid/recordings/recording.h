@@ -33,8 +33,9 @@ struct Recording {
   std::vector<RecordedEvent> events;
 };
 
-/// Reads the folder of a recording, or a single log file. If a file cannot be opened, the returned error is a
-/// sentence. If a log has problems, the returned error is empty, and all problems are added to `problems`.
+/// Reads the folder of a recording, or a single log file. If the log file cannot be read, the returned error
+/// is a sentence. If a log cannot be parsed, the returned error is empty, and `problems` contains the
+/// reasons. An unreadable run.json is ignored.
 [[nodiscard]] tl::expected<Recording, std::string> read_recording(const std::string& path,
                                                                   document::Problems& problems);
 
