@@ -11,8 +11,8 @@ namespace {
 
 using Segment = model::Segment<double>;
 
-/// The delay of a structure and its lag or regulator. A component that the structure does not have passes its
-/// input on unchanged.
+/// The delay of a structure, followed by its lags and its rate limit or by its regulator. A component that
+/// the structure does not have passes its input on unchanged.
 class Valve {
  public:
   Valve(const Record& record, const BaseStructure& structure, const NonlinearNumbers& n, double first_kpa)

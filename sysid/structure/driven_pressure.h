@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure in the finger: the drive of a record after the delay and the lag of a structure. A
-// regulator may replace the lag.
+// Computes the pressure in the finger: the drive of a record after the delay, the lags and the rate limit of
+// a structure. A regulator may replace the lags and the rate limit.
 
 #include <cstddef>
 #include <vector>
@@ -27,8 +27,8 @@ struct DrivenPressure {
 /// Computes the pressure and stores it in `driven`. The function reuses the memory of `driven`, because a
 /// search calls it thousands of times.
 /// @param index  index of the record in `numbers.jumped_from_kpa`.
-/// @param numbers  nonlinear parameters. The function reads only the parameters of delay, lag and regulator,
-/// and only if `structure` contains the component.
+/// @param numbers  nonlinear parameters. The function reads only the parameters of delay, lags, rate limit,
+/// regulator and initial jump.
 void drive(const Record& record, std::size_t index, const BaseStructure& structure,
            const NonlinearNumbers& numbers, DrivenPressure& driven);
 

@@ -82,8 +82,6 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
 }
 
 bool has(const BaseStructure& s, Ingredient ingredient) {
-  // If the structure has only one of delay and lag, the removal of `latency` would repeat the removal of this
-  // component.
   if (ingredient == Ingredient::latency) return s.delay && s.lag;
   return without(s, ingredient) != s;
 }

@@ -20,7 +20,7 @@ enum class Ingredient {
   lag,
   second_lag,
   rate_limit,
-  latency,      ///< delay and lag together, because each of them can largely replace the other
+  latency,      ///< delay, lags and rate limit together, because delay and lag can largely replace each other
   regulator,    ///< regulator; after its removal, the structure has a lag
   venting_lag,  ///< separate time constant for venting; after its removal, the lag has one time constant
   /// Characteristic and envelopes together, because each of them can largely replace the other.

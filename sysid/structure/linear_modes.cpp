@@ -26,7 +26,7 @@ constexpr std::size_t continued_starts = 3;
 /// Ridge penalty of the fixed set of modes, relative to the sum of squares of a column.
 constexpr double set_ridge = 1e-7;
 
-/// Returns periods at equal ratios, from the shortest period to the largest one of a fit.
+/// Returns periods at equal ratios, between the shortest and the longest period of a mode in a fit.
 std::vector<double> periods_s(const StructureGrid& grid, int count) {
   const double to_s = std::max(longest_mode_s(grid), grid.shortest_period_s);
   std::vector<double> list;

@@ -96,8 +96,8 @@ struct NonlinearNumbers {
   double second_s = 0;           ///< time constant of the second lag
   double filling_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure rises by 1 kPa
   double venting_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure falls by 1 kPa
-  /// Width of the dead band of the regulator: change of the command after a reversal to which the regulator
-  /// does not respond.
+  /// Width of the dead band of the regulator: after a reversal, the regulator does not respond until the
+  /// command has changed by this amount.
   double pilot_band_kpa = 0;
   /// Overlap of the regulator. The members overlap_kpa, integral_s and full_open_kpa are parameters of
   /// RegulatorNumbers.
@@ -117,8 +117,8 @@ struct NonlinearNumbers {
   std::vector<double> peak_before_kpa;
   std::vector<ModeNumbers> modes = {};  ///< linear modes
   /// For each record of a linear structure, the pressure at which the finger was at rest before the record.
-  /// It jumped to the first pressure at the first sample. Empty: the records begin at rest at the first
-  /// pressure.
+  /// At the first sample, the pressure jumped from this value to the first pressure of the record. Empty: the
+  /// records begin at rest at the first pressure.
   std::vector<double> jumped_from_kpa = {};
 
   bool operator==(const NonlinearNumbers&) const = default;

@@ -161,8 +161,9 @@ void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoi
   }
 }
 
-/// Tries linear modes in two forms. The modes alone are fitted fast. The modes in parallel with the chosen
-/// structure are tried only if a fast test shows that linear dynamics are missing.
+/// Tries linear modes in two forms: alone, and in parallel with the chosen structure. The second form takes
+/// longer. It is tried only if the modes alone were chosen or if a fast test shows that linear dynamics are
+/// missing.
 void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOptions& options,
                         StructureChoice& choice) {
   const std::vector<StructureTrial>& trials = choice.trials;

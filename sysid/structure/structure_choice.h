@@ -28,8 +28,8 @@ struct StructureChoiceOptions {
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< input of the structures; with Drive::measured, the structures have no
                                  ///< dead time
-  /// True: a second lag, a rate limit and a resonance are tried too. The diagnosis does not need these
-  /// extensions, because it tests them as causes.
+  /// True: a second lag, a rate limit, a resonance and linear modes are tried too. The diagnosis does not
+  /// need these extensions, because it tests causes with the same effects.
   bool dynamics = false;
   std::size_t starts = 20;  ///< number of start points for the published element
   /// Smallest time constant that counts as slow creep [s]; 0: 10 % of the longest record.
@@ -81,14 +81,15 @@ struct WithoutIngredient {
 /// Chooses a structure in three steps. First, the ridge parameter is chosen with the richest structure. Then
 /// the simplest structure is chosen whose held-out loss is within one standard error of the lowest one
 /// (Breiman et al. 1984, section 3.4.3). The standard error is that of the paired difference over blocks.
-/// Finally, extensions are tried. With Drive::command, these are a second lag (with `dynamics` only) and a
-/// regulator instead of the lags; with `dynamics`, a resonance and linear modes are tried as well. An
-/// extension is chosen if its held-out loss is significantly lower.
+/// Finally, extensions are tried: with Drive::command, a regulator instead of the lags; with Drive::command
+/// and `dynamics`, a second lag and a rate limit; with `dynamics`, a resonance and linear modes. If the
+/// published element has been chosen, only linear modes are tried. An extension is chosen if its held-out
+/// loss is significantly lower.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
 /// Fits a trial to the original records. During the choice, the trial was fitted to averaged records; the new
-/// fit starts at the parameters of this fit. In the result, `numbers` and the held-out losses keep their
+/// fit starts at the parameters of the trial. In the result, `numbers` and the held-out losses keep their
 /// values.
 [[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
 

@@ -17,8 +17,8 @@ namespace {
 using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
-/// Returns true if `a` and `b` have equal parameters of delay, lags and regulator. The pressure in the finger
-/// is then equal for both.
+/// Returns true if `a` and `b` have equal parameters of delay, lags, rate limit, regulator and initial jump.
+/// The pressure in the finger is then equal for both.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
          a.second_s == b.second_s && a.filling_s_per_kpa == b.filling_s_per_kpa &&
@@ -235,7 +235,8 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   return columns_;
 }
 
-/// Writes the columns of elastic gain and creep. These columns depend only on the pressure in the finger.
+/// Writes the columns of elastic gain and creep. These columns depend only on the pressure in the finger. If
+/// the structure has envelopes, write_hysteresis() overwrites the column of the elastic gain.
 void StructureColumns::write_driven(std::size_t r) {
   const DrivenPressure& driven = driven_[r];
   Ladder ladder(grid_.ladder_s, driven.first_kpa);

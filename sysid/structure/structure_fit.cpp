@@ -26,13 +26,13 @@ constexpr double least_elastic_share = 0.01;
 /// Upper limit of the dead band of a regulator, as a share of the largest pressure. Data sheets state values
 /// from 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
-/// Prior width of the bend of an envelope. With twice this width, envelopes would fit the saturation of a
-/// sensor and thereby hide the saturation (seen in the textbook test cases).
+/// Prior width of the bend and of the skew of an envelope. With twice this width, envelopes would fit the
+/// saturation of a sensor and thereby hide the saturation (seen in the textbook test cases).
 constexpr double usual_bend = 0.05;
 /// Ratio of consecutive time constants of the creep branches.
 constexpr double ladder_ratio = 3;
-/// Prior width of the logarithms of a mode's parameters; its shortest period in sampling intervals (the
-/// Nyquist period is 2); and its longest period in units of time_unit_s().
+/// Limits of linear modes: prior width of the logarithms of period and damping ratio, shortest period in
+/// sampling intervals (the Nyquist period is 2), and longest period in units of time_unit_s().
 constexpr double mode_width = 3, shortest_mode_in_intervals = 4, longest_mode_in_units = 10;
 
 /// A nonlinear parameter of the search. It is scaled to a coordinate t whose magnitude is about 1.
@@ -217,7 +217,8 @@ class Search {
     for (std::size_t r = 0; r < records_.size(); ++r) add_start(r);
   }
 
-  /// Adds the pressure before a record, if it is unknown: the last peak, or that before a jump.
+  /// Adds the pressure before a record if it is unknown: the last peak or, for a linear structure, the
+  /// pressure before the jump.
   void add_start(std::size_t r) {
     const bool linear = structure_.linear;
     if (linear ? records_[r].start == Start::rest : !records_[r].start_unknown) return;

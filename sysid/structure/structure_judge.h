@@ -1,6 +1,6 @@
 #pragma once
-// Fits single structures to records and evaluates them on held-out readings. The choice of the structure and
-// the removal of components use it.
+// Fits single structures to records and evaluates them on held-out readings. choose_structure() and
+// ablation_of() use the class StructureJudge.
 
 #include <cstddef>
 #include <vector>
@@ -45,8 +45,8 @@ class StructureJudge {
   /// Evaluates a structure in which a regulator replaces the lag. The fit starts at the parameters of the
   /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const;
-  /// Returns true if the held-out error of a trial is at most 1.1 times the noise of the readings. No further
-  /// component can then reduce it significantly.
+  /// Returns true if the held-out error of a trial is at most 1.1 times the noise of the readings (the lowest
+  /// noise of all records). No further component can then reduce this error significantly.
   [[nodiscard]] bool is_noise(const StructureTrial& trial) const;
   /// Returns the result of lacks_linear_dynamics() for a trial.
   [[nodiscard]] bool lacks_linear_dynamics(const StructureTrial& trial) const;

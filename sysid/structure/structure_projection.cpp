@@ -10,7 +10,7 @@ namespace {
 
 constexpr int most_steps = 20;
 constexpr double settled_share = 1e-8;
-/// Factor of the ridge penalty of weights that may have either sign.
+/// Factor of the ridge penalty for linear modes and for the elastic gain of a linear structure.
 constexpr double least_ridge = 1e-9;
 
 class Projector {

@@ -1,6 +1,6 @@
 #pragma once
-// Computes the optimal weights of a structure for constant nonlinear parameters. The method is nonnegative
-// least squares with ridge regularisation.
+// Computes the optimal weights of a structure for constant nonlinear parameters. The method is least squares
+// with bounds and ridge regularisation.
 
 #include <Eigen/Core>
 
@@ -18,7 +18,8 @@ struct ProjectionProblem {
       1;  ///< largest pressure; weight * largest_kpa is the largest motion of an operator [mm]
   double least_elastic =
       0;  ///< lower bound of the elastic weight; if the bound is positive, the model has an inverse
-  /// Factor of the ridge penalty: the squares of weight * largest_kpa are added to the mean square error.
+  /// Factor of the ridge penalty. The penalty is this factor times the sum of the squares of weight *
+  /// largest_kpa, and is added to the mean square error.
   double ridge = 0;
 };
 

@@ -14,7 +14,7 @@
 
 namespace softgrip::sysid {
 
-/// Parts that a valve model can have. They are listed in the order of the signal path.
+/// Parts that a valve model can have. In the signal path, the second lag directly follows the first lag.
 enum class ValvePart : std::uint8_t {
   delay,
   dead_band,
