@@ -7,15 +7,15 @@
 
 namespace softgrip::sysid {
 
-/// The minimum of x' G x / 2 - b' x subject to lower <= x <= upper.
+/// Solution of a bounded least-squares problem.
 struct BoundedSolution {
   Eigen::VectorXd x;
   std::vector<bool> at_bound;  ///< true for each variable that is at a bound
 };
 
-/// Returns the minimum of x' G x / 2 - b' x subject to lower <= x <= upper. @param gram  G, symmetric and
-/// positive semidefinite. G may be badly scaled or singular, because the solver scales G to a unit diagonal
-/// and adds a small regularisation.
+/// Returns the point x at which x' G x / 2 - b' x has its minimum subject to lower <= x <= upper. G (`gram`)
+/// is symmetric and positive semidefinite. G may be badly scaled or singular, because the solver scales G to
+/// a unit diagonal and adds a small regularisation.
 [[nodiscard]] BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b,
                                             const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 

@@ -30,8 +30,8 @@ struct DescentOptions {
   int most_trials = 8;
   double damping = 1e-2;    ///< damping of the first trial, as a share of the curvature
   double longest_step = 1;  ///< largest change of a coordinate in one step
-  /// The descent ends after a step that reduces the loss by less than least_share times the loss plus
-  /// least_gain.
+  /// The descent ends if no trial reduces the loss, or after a step that reduces the loss by less than
+  /// least_share times the loss plus least_gain.
   double least_share = 0;
   double least_gain = 0;  ///< constant part of the limit below which a decrease of the loss ends the descent
   /// Factor of the smallest damping of a coordinate. This damping is the factor times the current damping

@@ -60,7 +60,8 @@ class FitSpace {
   [[nodiscard]] const std::vector<FreeParameter>& free() const noexcept { return free_; }
   /// Fixes the initial states of the records to the values in `starts`.
   void hold_starts(const std::vector<StartState>& starts);
-  /// Fixes the motion before each record (its valley, and its speed at the first sample) to that in `starts`.
+  /// Fixes the last valley of the pressure before each record, and the rate of the pressure at the first
+  /// sample, to the values in `starts`.
   void hold_arrivals(const std::vector<StartState>& starts);
   /// Narrows the bounds of parameter `index` to the given range. A bound is never moved outwards.
   void bound(std::size_t index, double lower, double upper);

@@ -1,7 +1,8 @@
 #pragma once
 // Computes one step of the Bouc-Wen hysteresis with exponent 1, with all derivatives, for a monotonic change
 // of the pressure p. The hysteretic state is h = beta g. The equation of g is dg/dp = 1 - k g, with k =
-// +-(gamma + eta) while |g| grows and k = -+(gamma - eta) while |g| decreases.
+// +-(gamma + eta) while |g| grows and k = -+(gamma - eta) while |g| decreases. The upper sign is for a rising
+// pressure, the lower sign for a falling one.
 
 #include <cmath>
 

@@ -25,7 +25,7 @@ struct Spread {
 using BlockStatistic = std::function<double(std::span<const std::size_t> indices)>;
 /// Returns the statistic of each bootstrap sample (Efron 1979). A bootstrap sample consists of `blocks`
 /// blocks, drawn with replacement. Whole blocks are drawn, so the readings within a block may be correlated.
-/// Equal seeds give equal samples. @param blocks  number of blocks, at least 1.
+/// Equal seeds give equal samples. `blocks` must be at least 1.
 [[nodiscard]] std::vector<double> statistic_of_draws(std::size_t blocks, std::size_t draws,
                                                      std::uint64_t seed, const BlockStatistic& statistic);
 
@@ -56,10 +56,9 @@ struct LossDifference {
   double standard_error_mm2 = 0;
 };
 [[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
-/// Returns true if the mean loss of `better` is below the mean loss of `worse`, and if the 95 % interval of
-/// the difference is above 0. It is sufficient if both conditions hold for the losses, or if both hold for
-/// the logarithms of the losses. With logarithms, a block that is difficult for both models does not outweigh
-/// the other blocks.
+/// Returns true if two conditions hold: the mean loss of `better` is below the mean loss of `worse`, and the
+/// 95 % interval of the difference of the losses, or of their logarithms, is above 0. With logarithms, a
+/// block that is difficult for both models does not outweigh the other blocks.
 [[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);
 
 }  // namespace softgrip::sysid

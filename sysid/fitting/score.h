@@ -23,11 +23,12 @@ struct Score {
   double rmse_mm = 0;
   double rmse_percent_of_span = 0;
   double largest_error_mm = 0;
-  double first_cycle_rmse_mm = 0;  ///< RMSE of the first cycle; NaN if the command does not repeat
-  double settled_rmse_mm = 0;      ///< RMSE of the cycles after the first; NaN if there is only one cycle
+  double first_cycle_rmse_mm =
+      0;  ///< RMSE of the first cycle (see cycle_starts()); NaN if there is only one cycle
+  double settled_rmse_mm = 0;  ///< RMSE of the cycles after the first; NaN if there is only one cycle
   /// True if the prediction is not finite. Also true if its RMSE exceeds the span of the readings and the
-  /// prediction is not proportional to the readings. If the prediction is proportional to the readings, a
-  /// unit is probably wrong, and the prediction does not count as divergent.
+  /// magnitude of its correlation with the readings is below 0.9. With a higher correlation, a unit is
+  /// probably wrong, and the prediction does not count as divergent.
   bool diverges = false;
   StartState start;
 };
@@ -37,7 +38,8 @@ struct Score {
 [[nodiscard]] Score score_of(const model::Model& model, const Record& record, const StartState& start,
                              const std::vector<double>& readings);
 
-/// Returns a sentence such as "the prediction of sp1 diverges: ..." for each score whose prediction diverges.
+/// Returns a sentence such as "the prediction of sp1 diverges, because ..." for each score whose prediction
+/// diverges.
 [[nodiscard]] std::vector<std::string> divergences_of(const std::vector<Score>& scores);
 
 /// Returns the indices of the samples at which the cycles of a command begin. The first index is 0. A cycle

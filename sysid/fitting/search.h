@@ -25,9 +25,10 @@ struct Progress {
 using ShowProgress = std::function<void(const Progress&)>;
 
 /// Searches from all start points and returns the results in the order of the start points. A separable chain
-/// is fitted by variable projection, first on thinned records from each start point. Each distinct minimum
-/// whose RMSE is at most 1.3 times the lowest RMSE is then refined on all samples. Any other chain is fitted
-/// by minimise(). @param threads  number of threads; 0: one for each core.
+/// is fitted by variable projection. With several start points and at least 8000 samples, the first fits use
+/// thinned records. Each distinct minimum whose RMSE is at most 1.3 times the lowest RMSE is then refined on
+/// all samples. Any other chain is fitted by minimise(). `threads` is the number of threads; 0: one for each
+/// core.
 [[nodiscard]] std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,
                                                const std::vector<FitPoint>& starts, unsigned threads,
                                                const ShowProgress& progress);

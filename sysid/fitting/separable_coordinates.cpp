@@ -58,8 +58,8 @@ void SeparableSearch::add_linear(const FreeParts& parts) {
     lower_.push_back(lower);
     upper_.push_back(upper);
   };
-  // The data determine only the sum alpha + 1/k0, so this sum is fitted. Its lower bound is computed from the
-  // lower bound of alpha.
+  // The data determine only the sum alpha + 1/k0, so this sum is fitted. Its lower bound is 0 if alpha is
+  // free. If alpha is fixed, the lower bound is the value of alpha.
   const FitPoint base = space_->point(std::vector<double>(space_->size(), 0.0));
   const double fixed_alpha = base.model.blocks[shape_.bouc_wen].values[0];
   bound(parts.alpha >= 0 ? 0 : fixed_alpha, 1e6);

@@ -29,9 +29,9 @@ struct SearchResult {
 /// A search that is prepared for many start points. run() is thread-safe.
 class SeparableSearch {
  public:
-  /// Prepares a search. Returns nullopt if the chain is not separable. Also returns nullopt if one of its
-  /// linear parameters (alpha or k0, beta, each k with its c) is not free in `space`, or if only one of gamma
-  /// and eta is free.
+  /// Prepares a search. Returns nullopt if the chain is not separable. Also returns nullopt if `space` does
+  /// not make the following parameters free: alpha or k0, beta, and k and c of each branch. gamma and eta
+  /// must be both free or both fixed.
   /// @param records  records that must outlive the search.
   [[nodiscard]] static std::optional<SeparableSearch> make(const std::vector<Record>& records,
                                                            const FitSpace& space);

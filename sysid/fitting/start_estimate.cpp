@@ -24,8 +24,8 @@ constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.
 /// Prior standard deviation of the unsettled creep of a branch, divided by the settled creep of this branch
 /// over the range of the drive.
 constexpr double unsettled_share = 0.3;
-/// An initial state at rest is rejected if the residual under this assumption exceeds this number of standard
-/// deviations.
+/// Number of standard deviations by which the fit of an unknown start must be better than the simpler
+/// assumption (a start at rest, or the steady cycle).
 constexpr double rejected_at = 3;
 /// Duration after the first sample from which the speed of the drive is computed [s].
 constexpr double speed_over_s = 0.1;

@@ -12,9 +12,10 @@
 // the settled creep of the branch over that range.
 //
 // Record::start determines which quantities are estimated. For a start at rest, this is only the offset. For
-// an unknown start, these quantities are offset, hysteresis and creep. In the automatic mode, the unit is
-// assumed to begin at rest. This assumption is rejected if its residual exceeds 3 standard deviations of the
-// noise and of a model error of 5 % of the motion.
+// an unknown start, these quantities are offset, hysteresis and creep. In the automatic mode, a unit with
+// Record::start_unknown has an unknown start. Any other unit is assumed to begin at rest, unless an unknown
+// start reduces the RMS residual by more than 3 standard deviations of the noise and of a model error of 5 %
+// of the motion.
 //
 // A single stroke does not determine the start state under pressure. If the first readings do not distinguish
 // between possible start states, the hysteresis is assumed to be in its steady cycle over the range of the

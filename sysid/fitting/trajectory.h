@@ -14,8 +14,8 @@ namespace softgrip::sysid {
 [[nodiscard]] std::vector<double> predict(const model::Model& model, const Record& record,
                                           const StartState& start);
 
-/// Adds the offset and the unsettled creep of the initial state to a series. A Chain simulates neither of
-/// these two quantities. @param series_mm  predicted displacement at each sample of the record.
+/// Adds the offset and the unsettled creep of the initial state to `series_mm`, the predicted displacement at
+/// each sample of the record. A Chain simulates neither of these two quantities.
 void add_start(const model::Model& model, const Record& record, const StartState& start,
                std::vector<double>& series_mm);
 

@@ -30,11 +30,12 @@ inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double ar
                                : std::clamp(from_kpa, first_kpa, std::max(last_turn_kpa, first_kpa));
 }
 
-/// Brings a chain to the state at the start of a record, with the reversals in its StartState. The chain
-/// moves from rest at the peak to the valley, and from there to the first pressure. If the arrival speed is
-/// 0, the chain settles at the first pressure. Otherwise the chain settles at an earlier pressure and moves
-/// from there to the first pressure with the arrival speed. If there are no reversals, the chain is at rest
-/// at the first pressure.
+/// Brings a chain to the state at the start of a record, with the reversals in its StartState. If there are a
+/// peak and a valley, the chain begins at rest at the peak and passes `cycles_before` cycles, which end at
+/// the valley. If there is only one of them, the chain begins at rest there. Then the chain moves to the
+/// first pressure. If the arrival speed is 0, the chain settles at the first pressure. Otherwise the chain
+/// settles at an earlier pressure and moves from there to the first pressure with the arrival speed. If there
+/// are no reversals, the chain is at rest at the first pressure.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
   const double first_kpa = record.drive_kpa.front();
