@@ -59,8 +59,8 @@ class Profile {
     at_minimum_ = cost_at(z, z[index]).cost;
   }
 
-  /// Returns the value of the parameter at which the cost exceeds its minimum by the threshold. If the cost
-  /// does not reach the threshold within the bound of the parameter, returns the bound.
+  /// Returns the coordinate of the parameter at which the cost exceeds its minimum by the threshold. If the
+  /// cost does not reach the threshold within the bound of the parameter, returns the bound.
   [[nodiscard]] double edge(double direction) const {
     const FreeParameter& p = residuals_.space().free()[index_];
     const double bound = direction < 0 ? p.lower_z() : p.upper_z();

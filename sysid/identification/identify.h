@@ -26,11 +26,13 @@ struct Estimate {
   std::string unit;
   std::string formula;  ///< formula of a combination of parameters; empty for a single parameter
   double value = 0;
-  /// 95 % interval; empty if the value is fixed, at a bound or without effect.
+  /// 95 % interval; empty if the value is fixed, at a bound, without effect, or determined only in a sum with
+  /// another parameter.
   std::optional<Interval> ci95;
   std::optional<Interval> profile95;  ///< 95 % interval by profile likelihood; empty if it was not requested
   bool free = false;
-  /// True: half the width of the interval is at most half of the value or half of the value's typical change.
+  /// True: half the width of the interval is at most half of the larger of two numbers: the magnitude of the
+  /// value and its typical change. For a stiffness or damping, only the value counts.
   bool identifiable = false;
   std::string note;           ///< reason why the interval is missing; empty if there is an interval
   std::string formerly = {};  ///< deprecated name of the value, which JSON files also contain; empty: none
@@ -54,7 +56,8 @@ struct IdentifyOptions {
   /// Number of start points. The start points are the given model, random points around the given model, and
   /// random points at the scale of the data.
   std::size_t starts = 20;
-  std::vector<model::Model> start_points;  ///< models that are used as start points in place of random points
+  std::vector<model::Model> start_points;  ///< models that are used as start points in place of the given
+                                           ///< model and the random points
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< number of threads; 0: one per core
   bool robust = false;   ///< true: use Huber's loss, which is insensitive to outliers
@@ -134,8 +137,9 @@ struct Identification {
 [[nodiscard]] model::Model base_model(const std::vector<Log>& logs, std::size_t branches);
 [[nodiscard]] model::Model base_model(const std::vector<Record>& records, std::size_t branches);
 
-/// Fits the model `start` to the logs. Returns an error sentence in three cases: a named parameter does not
-/// exist, no parameter is to be fitted, or the model is not defined at any start point.
+/// Fits the model `start` to the logs. Returns an error sentence in these cases: there is no log, a log lacks
+/// the measured pressure that options.record.drive requires, the model is invalid, a parameter named in the
+/// options does not exist, or no start point leads to a finite prediction.
 [[nodiscard]] tl::expected<Identification, std::string> identify(const std::vector<Log>& logs,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});

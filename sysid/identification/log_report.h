@@ -33,8 +33,9 @@ void add_log_figures(Page& page, const Record& record, const Score& score);
 /// key is an object with one entry per log.
 [[nodiscard]] result::Fields fields_of(const std::vector<Score>& scores);
 
-/// Returns a table with one row per log. The columns are: input of the model, number of samples, RMSE, RMSE
-/// in % of the span, RMSE of the first cycle, RMSE of the settled cycles, and the largest error.
+/// Returns a table with one row per log. The columns are: name of the log, input of the model, number of
+/// samples, span, RMSE, RMSE in % of the span, RMSE of the first cycle, RMSE after the first cycle, and the
+/// largest error.
 [[nodiscard]] result::Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
 
 /// Returns a number whose text has three significant digits. The text is an en dash if the number is absent

@@ -20,9 +20,9 @@ class Drawer {
   Drawer(const FitSpace& space, const std::vector<Record>& records, std::uint64_t seed)
       : space_(space), scale_(campaign_size(records)), time_unit_s_(time_unit_s(records)), random_(seed) {}
 
-  /// Draws a random point around `given`. A positive value typically changes by a factor of about two. A
-  /// value that may be negative typically changes by the larger of two amounts: 70 % of the value, or 35 % of
-  /// its scale in the fit.
+  /// Draws a random point around `given`. A stiffness or damping typically changes by a factor of about two.
+  /// Any other model parameter typically changes by the larger of two amounts: 70 % of the value, or 35 % of
+  /// its scale in the fit. A pressure peak before a record is drawn uniformly from its range.
   FitPoint around(const FitPoint& given) {
     std::vector<double> z = space_.z(given);
     for (std::size_t i = 0; i < z.size(); ++i) {

@@ -59,8 +59,9 @@ struct Uncertainty {
   std::vector<bool> at_bound;
   std::vector<bool> without_effect;
   NoiseModel noise;
-  double quantile =
-      limits::deviate;  ///< 95 % quantile of Student's t distribution for the effective number of samples
+  double quantile = limits::deviate;  ///< half width of a 95 % interval in standard deviations: two-sided
+                                      ///< quantile of Student's t distribution, with the effective number of
+                                      ///< samples minus the number of parameters as degrees of freedom
   std::vector<LooseDirection> loose;
 
   /// Returns the standard deviation of coordinate `index`; 0: the parameter is at a bound or without effect.
