@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid::causes {
 
-/// The cause has three forms. With the start points of each form, the gain changes by 10 % during the
+/// The cause has three forms. With the start points of each form, the gain changes by about 10 % during the
 /// campaign.
 struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};

@@ -74,10 +74,10 @@ struct Cause {
 [[nodiscard]] std::span<const Cause> all_causes();
 [[nodiscard]] std::optional<Cause> find_cause(std::string_view id);
 /// Returns the cause that has a form with this block type. Returns nullptr if the block belongs to the base
-/// structure or describes the random error of the sensor. Blocks of these two types are not causes.
+/// structure or describes the random error of the sensor, because such a block is not a cause.
 [[nodiscard]] const Cause* cause_of(std::size_t block_type);
 
-/// Returns the form of `cause` to which `block` belongs.
+/// Returns the form of `cause` to which `block` belongs, or the last form if no form matches.
 [[nodiscard]] const CauseForm& form_of(const Cause& cause, const model::BlockSpec& block);
 /// Returns the form to which `block` belongs. Only the forms of `causes` are considered. Returns nullptr if
 /// no form matches the block.

@@ -113,8 +113,9 @@ struct Evidence {
                                     const StructureFit& recalibrated, const StructureFit& extended,
                                     double noise_mm, std::uint64_t seed);
 
-/// Returns a sentence such as "The error depends on the rate of the pressure (41 %) ...". It lists the
-/// conditions on which the error depends significantly. If there is no such condition, the sentence says so.
+/// Returns a sentence such as "The error depends on the rate of the pressure (41 %) ...". It lists at most
+/// three conditions on which the error depends significantly, and a significant oscillation. If there is
+/// none, the sentence says so.
 [[nodiscard]] std::string dependence_sentence(const ResidualEvidence& evidence);
 
 /// Returns true if an effect is significant. Only significant effects are drawn and described. The p-value
@@ -128,7 +129,8 @@ struct Evidence {
 
 /// Returns the spectrum of the residual at about 100 frequencies on a logarithmic scale. The spectrum is the
 /// sum of the periodograms of all records with a Hann window. The power of a line is compared with the median
-/// power at the neighbouring frequencies, so slow model errors do not count as lines.
+/// power at the neighbouring frequencies, so slow model errors do not count as lines. A line that the command
+/// also contains does not count either.
 /// @param structural_mm2  part of the residual variance that exceeds the noise; 0: the share of the line is
 /// not computed.
 [[nodiscard]] SpectrumEvidence spectrum_of(const std::vector<Record>& records,
