@@ -24,7 +24,7 @@ struct Series {
     line,
     points,
     band,   ///< the area between the curves y and y_upper
-    bars,   ///< bars from 0 to y that touch each other
+    bars,   ///< bars from 0 to y
     steps,  ///< a line that keeps the value of y until the next x
   };
   std::string label;  ///< text in the legend; "": the legend does not contain the curve

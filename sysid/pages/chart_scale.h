@@ -27,7 +27,8 @@ class Scale {
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] double upper() const { return upper_; }
   /// Returns about `most` ticks or fewer, at multiples of 1, 2 or 5 times a power of ten. On a logarithmic
-  /// axis, the ticks are at powers of ten.
+  /// axis, the ticks are at powers of ten; if the axis covers less than two decades, also at 2 and 5 times
+  /// these powers. On an axis with categories, each category has a tick.
   [[nodiscard]] std::vector<Tick> ticks(int most) const;
 
  private:

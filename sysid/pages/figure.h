@@ -34,7 +34,7 @@ struct Figure {
 /// Returns the figure as the text of a separate SVG file that contains both colour schemes.
 [[nodiscard]] std::string svg_file_of(const Figure& figure);
 /// Returns the values of the figure as CSV text with a header line: all values of each curve, or the rows of
-/// the drawing. Curves of a chart that have equal x values share one column of x values.
+/// the drawing. Consecutive curves that have equal x values share one column of x values.
 [[nodiscard]] std::string csv_of(const Figure& figure);
 
 }  // namespace softgrip::sysid
