@@ -41,7 +41,7 @@ void add_conditions(Page& page, const Diagnosis& d) {
       "The correlation time of the residual is " + significant(e.memory_s, 2) +
       " s. The tests therefore apply random signs to whole blocks of " + significant(e.block_s, 3) + " s (" +
       std::to_string(e.blocks) +
-      " blocks). The tests count how often  random signs give differences between the means that are as "
+      " blocks). The tests count how often random signs give differences between the means that are as "
       "large as the measured differences. The means are computed from one part of the blocks, and "
       "the share of each condition is evaluated on the other blocks. If conditions are "
       "correlated, their shares overlap. A dependence is significant if p < 0.02 and the "

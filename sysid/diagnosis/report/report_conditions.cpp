@@ -75,7 +75,7 @@ Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvid
 Figure conditions_figure(const Diagnosis& d) {
   constexpr std::size_t most = 4;
   Figure figure{"error by condition",
-                "Mean error with its 95 % interval for each condition on which the error depends "
+                "Mean error with its 95 % interval, for at most four conditions on which the error depends "
                 "significantly. A position is a predicted displacement and not a reading, because a reading "
                 "and its error contain the same noise." +
                     std::string(is_extended(d) ? " Dashed: extended model. Where the dashed curve is flat, "

@@ -324,14 +324,15 @@ Figure spectrum_figure(const Diagnosis& d) {
     const double density = d.noise_mm * d.noise_mm / s.frequency_hz.back();
     chart.marks.push_back({Mark::Direction::horizontal, density, "noise of the readings"});
   }
-  return {"spectrum of the error",
-          is_clear(s.p_value, s.share_percent)
-              ? "Spectrum of the error. Strongest spectral line that is not in the command: " +
-                    significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) +
-                    " " + std::string(model::name_of(d.extended_model.output_unit)) + " (p " +
-                    significant(s.p_value, 2) + ")."
-              : "Spectrum of the error. All significant lines of this spectrum are also in the command.",
-          {{chart}}};
+  return {
+      "spectrum of the error",
+      is_clear(s.p_value, s.share_percent)
+          ? "Spectrum of the error. Most significant spectral line that is not in the command: " +
+                significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) + " " +
+                std::string(model::name_of(d.extended_model.output_unit)) + " (p " +
+                significant(s.p_value, 2) + ")."
+          : "Spectrum of the error. This spectrum has no significant line that is not also in the command.",
+      {{chart}}};
 }
 
 }  // namespace softgrip::sysid

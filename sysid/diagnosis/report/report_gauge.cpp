@@ -84,7 +84,7 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
   page.figure({"gauge check of the sensor",
                "Readings of the sensor at known positions (" + gauge.file.path +
                    "), relative to the straight line that fits best. Dashed: hypotheses that are ruled out. "
-                   "The figure uses only readings within the range of the logs, widened slightly.",
+                   "Readings outside the slightly widened range of the logs are clipped to this range.",
                {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(gauge));
   page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +

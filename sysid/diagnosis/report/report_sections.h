@@ -47,13 +47,14 @@ void add_appendix(Page& page, const DiagnosisReport& report);
 /// `given` does not contain it.
 [[nodiscard]] Figure chain_figure(const model::Model& model, const model::Model& given);
 
-/// Returns one chart for each condition on which the error depends significantly. A chart shows the mean
-/// error and its 95 % interval over the condition. Two charts are placed side by side. If the error depends
-/// on no condition, the figure contains no charts.
+/// Returns one chart for each condition on which the error depends significantly, but at most four charts. A
+/// chart shows the mean error and its 95 % interval over the condition. Two charts are placed side by side.
+/// If the error depends on no condition, the figure contains no charts.
 [[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
 
-/// Returns the indices of the logs, sorted by the error reduction, the largest first. The reduction is that
-/// by the extended model. If there is no extended model, it is the reduction by the refitted model.
+/// Returns the indices of the logs, sorted by the error reduction, the largest first. The reduction is the
+/// difference between the mean square errors of the refitted and the extended model or, without an extension,
+/// of the given and the refitted model.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
 /// Returns true if the pressure changes during at least 10 % of the duration of the log. A log with shorter
 /// changes consists of pressure steps, and a plot of the displacement over the pressure shows no loops.
@@ -62,12 +63,12 @@ void add_appendix(Page& page, const DiagnosisReport& report);
 /// there is no such log.
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
-/// Returns two charts with a common time axis. The first chart shows the measured and the predicted
-/// displacement. The second chart shows the errors of the model before and after the extension. If the model
-/// was not extended, it shows the errors before and after the refit.
+/// Returns charts with a common time axis. The first chart shows the measured and the predicted displacement,
+/// and the second one the errors of the given and the refitted model. If the model was extended, a third
+/// chart shows the errors of the extended model.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Returns the error of each available model on each run. For the error on a run, the model was fitted to the
-/// other runs.
+/// Returns a chart of the error of each available model on each run, or on each half of a single run. For
+/// each error, the refitted and the extended model were fitted to the other runs or to the other half.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);
 /// Returns two charts of the displacement over the pressure. The first chart shows the complete loops. The
 /// second chart shows the section in which the models differ most.
@@ -102,8 +103,9 @@ void add_reached(Page& page, const DiagnosisReport& report);
 /// Returns a table of the errors of the given, the refitted and the extended model. The errors are evaluated
 /// on all readings, on held-out blocks and on held-out logs.
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
-/// Returns a table with one row per condition. For each available model, a row states the p-value and the
-/// share of the residual variance that the condition explains.
+/// Returns a table with one row per condition. A row states, for each available model, the share of the
+/// residual variance above the noise that the condition explains. For the refitted and the extended model, it
+/// also states the adjusted p-value.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
 /// Returns the fields of each candidate that was tested to replace the cause `chosen`. If `chosen` is
 /// nullptr, returns the fields of the candidates that were tested as an additional cause.
@@ -114,8 +116,8 @@ void add_reached(Page& page, const DiagnosisReport& report);
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
 /// Returns the fields of the errors of the models on one run.
 [[nodiscard]] result::Fields run_fields(const Diagnosis& diagnosis, const RunError& run);
-/// Returns a table of the errors of the models on each run. For the error on a run, the model was fitted to
-/// the other runs.
+/// Returns a table of the errors of the models on each run. For the error on a run, the refitted and the
+/// extended model were fitted to the other runs.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);
 /// Returns the causes that the first part of the report shows. These are the named causes, and the partial
 /// explanations whose error reduction is significantly greater than zero.

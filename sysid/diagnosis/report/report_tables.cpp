@@ -34,7 +34,7 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
       return "equivalent";
   }
   if (!c.why_not.empty()) return c.why_not;
-  if (std::isnan(c.heldout_rmse_mm)) return "fit much worse than the best fit";
+  if (std::isnan(c.heldout_rmse_mm)) return "fitted error larger than that of the best candidates";
   if (c.gain_percent.lower <= 0) return "not significant";
   if (chosen == nullptr) return "the error reduction is too small";
   return "larger error: " + significant(c.heldout_rmse_mm, 3) + " instead of " +
@@ -104,11 +104,12 @@ Table condition_table(const Evidence& evidence, bool extended) {
       fields.emplace_back("", "extended [%]", share(in(evidence.extended)));
       fields.emplace_back("", "p", p(in(evidence.extended)));
     }
-    fields.emplace_back("", "note", judged ? (e.clear ? "clear" : "") : e.condition.why_not);
+    fields.emplace_back("", "note", judged ? (e.clear ? "significant" : "") : e.condition.why_not);
     return fields;
   };
-  return result::table_of("Share of the residual variance explained by each condition, with adjusted p-value",
-                          evidence.recalibrated.conditions, of_condition);
+  return result::table_of(
+      "Share of the residual variance above the noise that each condition explains, with adjusted p-value",
+      evidence.recalibrated.conditions, of_condition);
 }
 
 std::vector<Fields> candidate_rows(const Diagnosis& d, const NamedCause* chosen) {
