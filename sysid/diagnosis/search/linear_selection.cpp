@@ -20,7 +20,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest mean square of a candidate after the medium fit, as a multiple of the smallest mean square of all
+/// Largest mean square of a candidate after the linear fit, as a multiple of the smallest mean square of all
 /// candidates. A candidate above this limit is dropped, because a refit of the base structure absorbs at most
 /// about half of the effect of a cause.
 constexpr double hopeless_ratio = 4;
@@ -30,8 +30,9 @@ constexpr int turns = 2;
 /// Trial shares of the linear response of the base structure to a cause. The fit starts at the share with the
 /// smallest error. If the base structure is strongly nonlinear, the full response is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// Limit of the mean logarithm of the ratio of the block losses (without the cause / with the cause). Above
-/// this limit, the losses count as reduced in most blocks (see LeastTaken).
+/// Limit of the mean logarithm of the ratio of the block losses (without the cause / with the cause). If the
+/// lower end of its 95 % interval is above this limit, the losses count as reduced in most blocks (see
+/// LeastTaken).
 constexpr double in_most_blocks = 0.15;
 /// Largest elastic_share() for which a backlash is searched that the play operators may have absorbed.
 constexpr double little_elastic = 0.3;
@@ -318,9 +319,9 @@ class SelectorUpon {
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
-  /// Returns true if the candidate can be named. Every other candidate that fits nearly as well becomes its
-  /// alternative. If there are more than most_undecided alternatives, no cause is named and the result is
-  /// false.
+  /// Returns true if the candidate can be named. Its loss must be significantly lower than without it. Every
+  /// other candidate that fits nearly as well becomes its alternative. If there are more than most_undecided
+  /// alternatives, no cause is named and the result is false.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {

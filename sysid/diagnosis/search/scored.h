@@ -13,8 +13,8 @@ namespace softgrip::sysid {
 
 struct ScoredCandidate {
   Candidate candidate;
-  BlockLosses losses;  ///< losses on held-out blocks; empty: not computed, because the fit was much worse
-                       ///< than the best fit
+  BlockLosses losses;  ///< losses on held-out blocks; empty: not computed, because enough other candidates
+                       ///< have a smaller fitted error
 };
 
 /// Returns true if the candidate was fitted in a free form, which can follow any slow signal. A free form is

@@ -18,8 +18,8 @@ struct CandidateScore {
   Cause cause;
   std::string why_not;         ///< reason why the candidate was not fitted or was rejected
   double rmse_mm = 0;          ///< RMSE of the fit of the candidate to all readings
-  double heldout_rmse_mm = 0;  ///< RMSE on held-out blocks; NaN: not computed, because the fit was much worse
-                               ///< than the best fit
+  double heldout_rmse_mm = 0;  ///< RMSE on held-out blocks; NaN: not computed, because enough other
+                               ///< candidates have a smaller `rmse_mm`
   Spread gain_percent;         ///< held-out error reduction, compared with the structure without the
                                ///< candidate
 };
@@ -63,7 +63,8 @@ struct Selection {
 /// finger exactly. A cause that is not present can absorb part of the resulting error.
 struct LeastTaken {
   double anyhow;          ///< limit if the reduction comes from a few blocks only
-  double in_most_blocks;  ///< limit if the loss is reduced by at least about 10 % in most blocks
+  double in_most_blocks;  ///< limit if the losses of the blocks decrease by more than about 14 % (geometric
+                          ///< mean)
 };
 /// Limits if the input of the model is the command. The remaining error then includes the error of the valve
 /// model. In test cases, causes that are not present reduce the mean square by 0.1 to 1.4 times the squared

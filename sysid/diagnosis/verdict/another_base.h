@@ -23,8 +23,8 @@ inline constexpr double left_by_what_was_missing = 0.25;
 
 /// Returns true if a rejected base structure supports the alternative "hysteresis of another shape". Two
 /// conditions must hold. The rejected base structure contains hysteresis of a different shape, but no
-/// asymmetric loop. Its loss is at most slightly larger than the loss of the selection on the given base
-/// structure.
+/// asymmetric loop. Its held-out RMSE exceeds that of the selection on the given base structure by less than
+/// 10 %.
 /// @param selected  held-out losses of the selection.
 [[nodiscard]] bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected);
 /// Adds "hysteresis of another shape" to the alternatives of each named asymmetric loop.

@@ -34,7 +34,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ratio of the RMSE of a held-out fold to the RMSE of the fit above which the fold counts as diverged.
+/// Ratio of the held-out RMSE to the unexplained error of the fit above which a fold counts as diverged.
 constexpr double ran_off_above = 3;
 
 /// Elastic share of play operators below which they act like a backlash. The elastic share is the part of the

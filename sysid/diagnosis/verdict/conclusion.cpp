@@ -148,8 +148,7 @@ bool Conclusion::left_by_outliers(const UnexplainedError& structure) const {
 }
 
 void Conclusion::conclude(const Selection& selection) {
-  // The gauge readings have selected one of two indistinguishable causes. In this case, the remaining error
-  // does not affect the verdict.
+  // If the gauge readings have replaced a named cause, the remaining error does not affect the verdict.
   const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
   const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
   const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();

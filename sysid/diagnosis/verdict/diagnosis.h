@@ -60,7 +60,7 @@ struct RunError {
 };
 
 struct Diagnosis {
-  /// Verdict that only the displacement leads to. whole_verdict() includes the measured pressure.
+  /// Verdict from the displacement alone. whole_verdict() also considers the measured pressure.
   Verdict verdict = Verdict::unexplained;
   /// Named causes. Only the verdicts cause_found, ambiguous and partly_explained have named causes. For all
   /// other verdicts, the list is empty.
@@ -122,7 +122,7 @@ struct Diagnosis {
   return !d.extended.causes.empty() || !d.base.empty();
 }
 
-/// Returns the verdict to which the displacement and the measured pressure together lead.
+/// Returns the verdict from the displacement and the measured pressure.
 [[nodiscard]] Verdict whole_verdict(const Diagnosis& d);
 
 /// Measures the wall time of each stage of a diagnosis.

@@ -79,7 +79,7 @@ struct LostPressure {
 };
 
 /// Searches for a leak. Returns nullopt in three cases:
-/// - The fitted gain of the pressure sensor is within the scale errors.
+/// - The fitted gain of the pressure sensor is at least 1 - scales_agree_within.
 /// - A leak reduces the mean square error of the model without leak by less than half.
 /// - A leak reduces this error by less than 95 % of the reduction that the fitted sensor gain achieves.
 /// @param scaled  fit of `parts` without a leak; gain and zero offset of the pressure sensor are fitted.
