@@ -390,7 +390,7 @@ std::string dependence_sentence(const ResidualEvidence& evidence) {
   }
   if (named == 0) return "The error does not significantly depend on any condition in these logs.";
   return "The error depends on " + text +
-         " (in brackets: share of the residual variance that this condition alone explains).";
+         " (in brackets: share of the residual variance above the noise that this condition alone explains).";
 }
 
 }  // namespace softgrip::sysid

@@ -17,7 +17,8 @@ struct ExperimentOptions {
   /// Pressure limits of the rig. Not set: the largest pressure of the logs, and a slew rate of 300 kPa/s.
   std::optional<RigLimits> limits;
   /// True: an experiment is designed even if the verdict lists no alternatives. It then compares the named
-  /// cause with the best rejected candidates.
+  /// cause with at most two other candidates. If no cause is named, it compares the refitted model with at
+  /// most two rejected causes.
   bool always = false;
   /// True: the logs contain the measured pressure. False: the advice may be to record the pressure.
   bool pressure_recorded = false;
@@ -43,7 +44,8 @@ struct JudgedWaveform {
   Waveform waveform;
   double minutes = 0;  ///< duration of the waveform plus the rest before the waveform
   std::vector<Separation> separations;
-  double merit = 0;  ///< sum of the squared separations, divided by `minutes`
+  double merit = 0;  ///< sum of the squared separations, divided by `minutes`; a separation below 5 counts as
+                     ///< 0, one above 40 as 40
 };
 
 /// A proposed check of the sensor at known positions. It separates causes that imply different static shapes
@@ -80,8 +82,8 @@ inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 /// Smallest separation for which two causes count as distinguishable [standard deviations].
 inline constexpr double separation_needed_sigma = 5;
 
-/// Designs the next experiment for a diagnosis. The result contains no waveform if the verdict requires no
-/// experiment.
+/// Designs the next experiment for a diagnosis. The result is empty if the verdict is not ambiguous and
+/// `always` is false. The result contains no waveform if no waveform separates two of the causes.
 [[nodiscard]] NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options);
 
 /// Returns the proposed experiment as the text of a sequence file for softgripd.

@@ -19,7 +19,7 @@ struct AdviceFacts {
 [[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
                                                   const AdviceFacts& facts);
 
-/// Returns the sentence that proposes to check the sensor against a gauge.
+/// Returns sentences that propose a check of the sensor against a gauge and describe the procedure.
 [[nodiscard]] std::string gauge_advice(const std::vector<double>& positions_mm,
                                        const std::vector<std::string>& separates);
 

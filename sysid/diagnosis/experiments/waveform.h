@@ -29,8 +29,8 @@ struct Waveform {
 };
 
 /// Returns all waveforms for experiments: rests between repeated loads, triangles at three rates, steps with
-/// holds, minor loops, increasing amplitudes, and sharp steps. The fastest triangles are 100 times faster
-/// than the slowest ones. All waveforms are within the limits of the rig.
+/// holds, minor loops, increasing amplitudes, and sharp steps. All waveforms are within the limits of the
+/// rig. If the slew limit permits it, the fastest triangles are 100 times faster than the slowest ones.
 [[nodiscard]] std::vector<Waveform> experiment_menu(const RigLimits& limits);
 
 /// Returns the command at intervals of `interval_s` from time 0 to the end of the waveform.

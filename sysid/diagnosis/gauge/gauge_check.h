@@ -71,8 +71,8 @@ enum class GaugeOutcome {
   /// Several hypotheses explain the readings. Either the readings are too noisy, or they were not taken at
   /// positions where the hypotheses differ.
   undecided,
-  /// No hypothesis explains the readings. Nevertheless, a hypothesis is ruled out if another one is much more
-  /// likely.
+  /// No hypothesis explains the readings. Nevertheless, a hypothesis can be ruled out if it differs much from
+  /// the most likely one, because the tolerance increases with the difference.
   unexplained,
   /// The gauge readings cover less than half of the range of the readings in the logs, so no hypothesis is
   /// tested.

@@ -15,7 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A cause between which the gauge check decides: a named cause, or another cause in its place.
+/// One of the causes between which the gauge check decides: a named cause, or another cause in its place.
 struct Standing {
   Cause cause;
   StructureFit fit;

@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// Returns the standard deviation of the random change between consecutive samples [mm]. It is computed from
-/// third differences. Smooth motion and single wrong samples do not increase the result, but quantisation
-/// does.
+/// Returns the standard deviation of the white noise of the readings [mm]. It is computed from third
+/// differences of consecutive readings. Smooth motion and single wrong samples do not increase the result,
+/// but quantisation does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
 /// The part of a residual that exceeds the measurement noise.

@@ -20,7 +20,7 @@ namespace {
 
 /// Smallest distance of an outlier from the median of its four neighbours, in standard deviations of the
 /// noise. For a correct reading, the distance has a standard deviation of about 1.15. It exceeds the limit in
-/// less than 1 of 10 million readings.
+/// less than 2 of 10 million readings.
 constexpr double beyond = 6.0;
 
 double neighbours_median(const std::vector<double>& y, std::size_t i) {

@@ -25,8 +25,8 @@ struct OutlierEvidence {
   double size_low_mm = 0;  ///< lower end of the 95 % interval of the size
   double size_high_mm = 0;
   bool distorts = false;  ///< true: the outliers cause an error above a quarter of the noise
-  /// True: the outliers cause an error above a quarter of the noise, and they are so many that a knock on the
-  /// table cannot explain them.
+  /// True: the outliers cause an error above a quarter of the noise, and there are at least
+  /// limits::fewest_occurrences of them.
   bool present = false;
   std::vector<double> sizes_mm;
 };
@@ -47,7 +47,7 @@ std::size_t hide_outliers_beside(std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm, double noise_mm,
                                  OutlierEvidence& evidence);
 
-/// Replaces wrong readings by NaN if they increase the error by more than a quarter of the noise.
+/// Replaces wrong readings by NaN if together they cause an RMS error above a quarter of the noise.
 /// hide_outliers() determines which readings are wrong. Returns one sentence for each log with replaced
 /// readings. The sentence states their number and the first ones of them.
 [[nodiscard]] std::vector<std::string> take_out_wrong_readings(std::vector<Log>& logs);
