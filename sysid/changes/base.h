@@ -59,7 +59,7 @@ struct Base : HealthyModel {
   double largest_kpa = 0;
   double temperature_c = 20;  ///< mean temperature in the healthy logs; 20 if it is not recorded
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
-  double noise_mm = 0;        ///< standard deviation of the noise between consecutive readings
+  double noise_mm = 0;        ///< standard deviation of the white noise of the readings (fast_noise_mm())
   Units units;                ///< division of the healthy records into units for cross-validation
   double span_mm = 0;
   double gain_spread = 0;  ///< relative spread of the gain between the healthy runs; with one healthy run, at

@@ -82,8 +82,9 @@ struct RunLeft {
 struct JudgedChange {
   Judged judged = Judged::displacement;
   model::OutputUnit output_unit = model::OutputUnit::mm;
-  std::string base;     ///< description of the baseline model
-  double noise_mm = 0;  ///< noise between consecutive samples; in kPa for the pressure
+  std::string base;  ///< description of the baseline model
+  double noise_mm =
+      0;  ///< white noise of the readings, estimated from consecutive samples; in kPa for the pressure
   std::size_t healthy_runs = 0;
   double healthy_mm = 0;  ///< RMS error of the baseline model in left-out healthy units
   double allowed_mm = 0;  ///< largest RMS error that is expected in another healthy run

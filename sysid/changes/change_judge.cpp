@@ -242,8 +242,8 @@ class Judge {
                                                         const Eigen::VectorXd& without,
                                                         const std::vector<FittedEffect>& found,
                                                         JudgedChange& judged) const {
-    // The table of tested causes shows the numbers of the first search. The reason of a later search
-    // therefore names the causes that the later search took for granted.
+    // The table of tested causes shows the numbers of the first search. If a later search rejects a cause,
+    // the reason therefore names the causes that were found before this search.
     std::string given;
     for (const FittedEffect& each : found) given += (given.empty() ? "with " : " and ") + each.effect.id;
     if (!given.empty()) given += ", ";

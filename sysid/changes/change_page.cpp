@@ -29,8 +29,8 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
   }
 }
 
-/// Returns the figure of the residuals in the later logs, without and with the causes. The logs are placed
-/// one after the other on the time axis.
+/// Returns the figure of the residuals in the later logs, without and with the causes. Each log has its own
+/// chart.
 Figure residual_figure(const JudgedChange& judged, bool explained) {
   std::vector<Chart> charts;
   for (std::size_t r = 0; r < judged.left.size(); ++r) {

@@ -16,7 +16,8 @@ struct EffectFit {
   Eigen::VectorXd white;
 };
 
-/// Fits the parameters of an effect from the best of its start points. The other effects stay constant.
+/// Fits the parameters of an effect. The fit is continued from the best start points
+/// (limits::followed_starts), and the best result is returned. The other effects stay constant.
 /// @param without  whitened residual with the other effects only: result of readings.white(others).
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                                    const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);

@@ -33,7 +33,7 @@ struct Disagreement {
                                                     unsigned threads);
 
 /// Computes the tolerance of the search from the error reductions that it finds in the healthy runs.
-/// @param more  increase of the expected loss per row that an unfamiliar input causes.
+/// @param more  amount by which an unfamiliar input increases the expected loss per row.
 [[nodiscard]] Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs,
                                      double more = 0);
 
@@ -42,7 +42,7 @@ struct Disagreement {
 class RunSpread {
  public:
   RunSpread() = default;
-  /// @param more  increase of the expected squared error that an unfamiliar input causes.
+  /// @param more  amount by which an unfamiliar input increases the expected squared error.
   RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs, const Disagreement& more = {});
   [[nodiscard]] double usual_rms() const { return std::sqrt(mean_square_); }
   [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * (mean_square_ + more_.mean_square)); }

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// Returns the two next steps for a cause. The texts are empty if no cause has this id.
 [[nodiscard]] std::array<std::string_view, 2> next_steps(std::string_view cause_id);
 
-/// Returns a description of the cause for an operator, such as "the gain of the finger has changed".
+/// Returns a description of the cause for an operator, such as "the gain has changed".
 [[nodiscard]] std::string_view plain_words(std::string_view cause_id);
 
 /// Returns the ids of all causes that can develop while a finger is in operation.
