@@ -1,6 +1,7 @@
 #pragma once
-// Compares two hypotheses by their losses on the same data. Every decision between two causes or two models
-// uses this comparison.
+// Compares two hypotheses by their losses on the same data. The search for changes and the conditions under
+// which a cause may be named use this comparison. The bootstrap of sysid/fitting/paired_losses.h draws blocks
+// instead.
 
 #include <cstdint>
 #include <vector>

@@ -27,7 +27,7 @@ class Tolerance {
   Tolerance() = default;
   /// @param units  error reductions in each cross-validation unit; at least one unit.
   /// @param runs  number of runs that all units contain together.
-  /// @param more  increase of the expected loss per row because of an unfamiliar input.
+  /// @param more  amount by which an unfamiliar input increases the expected loss per row.
   Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more = 0);
 
   /// Returns the mean error reduction by a cause in data without a change. Negative reductions count as 0.

@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 
 struct Division;
 
-/// Division of repeated runs into units. A unit is one run. If there are more than limits::most_units runs, a
-/// unit consists of several runs. A single run is divided into two halves, which are then the units. The
+/// Division of repeated runs into units. A unit is one run. If there are more than limits::most_units runs,
+/// units consist of several runs. A single run is divided into two halves, which are then the units. The
 /// halves do not show the differences between runs.
 class Units {
  public:

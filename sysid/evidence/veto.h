@@ -11,7 +11,8 @@ namespace softgrip::sysid {
 
 /// Evidence that decides whether a cause is reported.
 struct Claim {
-  /// 95 % interval of the size of the cause; empty: the data do not determine the size.
+  /// 95 % interval of the size of the cause; empty: the data do not determine the size, and the conditions on
+  /// the size are not tested.
   std::optional<Interval> size;
   /// Largest possible size of the cause, in the unit of `size`. It is the span of the displacement [mm], the
   /// largest pressure [kPa] or the length of the longest log [s]. For all other units it is infinite, so

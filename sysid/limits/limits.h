@@ -38,8 +38,8 @@ inline constexpr std::size_t followed_starts = 2;
 /// Number of start points of a fit that repeats an earlier search or that only needs an approximate result. A
 /// complete search uses more start points.
 inline constexpr std::size_t repeated_starts = 6;
-/// Largest number of alternatives that are examined or listed for one cause. A user cannot test more
-/// alternatives than this number.
+/// Largest number of alternatives that are examined or listed for one cause. A user is not expected to test
+/// more alternatives.
 inline constexpr std::size_t most_alternatives = 4;
 /// Smallest number of events in a test at the level 1 - probability (5 %), because one exception in 20 events
 /// corresponds to 5 %. Events are jumps, intervals, samples or simulations.

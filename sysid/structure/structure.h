@@ -25,7 +25,7 @@ struct BaseStructure {
                            ///< hysteresis
   /// True: the structure has a chain of creep branches with fixed time constants.
   bool creep = true;
-  bool slow_creep = true;  ///< true: the chain includes time constants above 10 % of the longest record
+  bool slow_creep = true;  ///< true: the chain includes time constants from StructureGrid::slow_from_s on
   bool delay = true;       ///< true: there is a dead time between the drive and the finger
   bool lag = true;         ///< true: there is a first-order lag after the dead time
   bool two_way = true;     ///< true: the lag has different time constants for filling and venting

@@ -31,7 +31,7 @@ using ValveParts = std::bitset<valve_part_count>;
 [[nodiscard]] constexpr std::size_t index_of(ValvePart part) {
   return static_cast<std::size_t>(part);
 }
-/// Returns the parts that every valve model has: a dead time, and a lag with separate time constants for
+/// Returns the parts of the default valve model: a dead time, and a lag with separate time constants for
 /// filling and venting.
 [[nodiscard]] inline ValveParts usual_valve_parts() {
   return ValveParts()
