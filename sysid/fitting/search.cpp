@@ -78,8 +78,8 @@ std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchR
   return place;
 }
 
-/// Searches from all start points on the records of `few`. Repeats a search with more damping if its result
-/// is worse than the best one.
+/// Searches from all start points on the records of `few`. Repeats a search with more damping if its RMSE
+/// exceeds the lowest RMSE by more than 2 %.
 std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<FitPoint>& starts,
                                unsigned threads, const ShowProgress& progress) {
   ProgressReporter reporter(progress, starts.size());

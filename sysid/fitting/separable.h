@@ -86,9 +86,9 @@ class SeparableRecord {
   [[nodiscard]] const Record& record() const noexcept { return record_; }
   [[nodiscard]] const SeparableColumns& columns() const noexcept { return columns_; }
 
-  /// Function that receives up to `block_rows` consecutive rows, one per reading. A row consists of the
-  /// columns that SeparableColumns::linear() or all() counts, and of one more column. This last column is the
-  /// reading, or prediction minus reading if the sensitivities are included.
+  /// Receiver of up to `block_rows` consecutive rows, one per reading. A row consists of the columns that
+  /// SeparableColumns::linear() or all() counts, and of one more column. This last column is the reading, or
+  /// prediction minus reading if the sensitivities are included.
   class Sink {
    public:
     virtual ~Sink() = default;

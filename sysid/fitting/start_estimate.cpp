@@ -235,8 +235,8 @@ class StartSearch {
     return (beginning_.drive_kpa[i] - first_kpa_) / (beginning_.time_s[i] - beginning_.time_s[0]);
   }
 
-  /// Returns true if the residual for an initial state at rest is significant: neither the noise nor the
-  /// assumed model error explains it.
+  /// Returns true if the initial state `moving` has a significantly smaller residual than the state `resting`
+  /// at rest: neither the noise nor the assumed model error explains the difference.
   [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
     const Eigen::VectorXd still = unexplained(resting.start);
     double sum = 0, squares = 0;

@@ -14,8 +14,8 @@
 // Record::start determines which quantities are estimated. For a start at rest, this is only the offset. For
 // an unknown start, these quantities are offset, hysteresis and creep. In the automatic mode, a unit with
 // Record::start_unknown has an unknown start. Any other unit is assumed to begin at rest, unless an unknown
-// start reduces the RMS residual by more than 3 standard deviations of the noise and of a model error of 5 %
-// of the motion.
+// start reduces the mean square residual by more than 9 times the sum of two variances: the variance of the
+// mean of the noise, and that of a model error of 5 % of the motion.
 //
 // A single stroke does not determine the start state under pressure. If the first readings do not distinguish
 // between possible start states, the hysteresis is assumed to be in its steady cycle over the range of the

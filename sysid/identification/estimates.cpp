@@ -13,7 +13,8 @@ namespace softgrip::sysid {
 namespace {
 
 /// A parameter is identifiable if half the width of its interval is at most this share of the larger of two
-/// numbers: the parameter's value and its typical change.
+/// numbers: the magnitude of the parameter's value and its typical change. For a stiffness or damping, only
+/// the value counts.
 constexpr double narrow_share = 0.5;
 
 Estimate estimate_of(const FittedPoint& fit, std::size_t index) {

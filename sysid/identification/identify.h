@@ -70,7 +70,7 @@ struct IdentifyOptions {
   ShowProgress progress;
 };
 
-/// Results of the choice of a model structure. A structure is chosen if the caller does not specify one.
+/// Results of the choice of a model structure by identify_structure().
 struct StructureEvidence {
   /// A model structure that was compared with other structures.
   struct Candidate {
@@ -117,7 +117,7 @@ struct Identification {
   std::vector<Estimate> starts;  ///< estimated offsets of the readings and estimated initial states
   std::vector<LooseDirection> loose;
   NoiseModel noise;          ///< autoregressive model of the residuals
-  double fast_noise_mm = 0;  ///< noise between consecutive readings; the largest value of all logs
+  double fast_noise_mm = 0;  ///< white noise of the readings (fast_noise_mm()); the largest value of all logs
   MultiStart multistart;
   double rmse_mm = 0;  ///< RMSE of all fitted samples
   /// Width of Huber's loss; 0: the loss is the squared error.

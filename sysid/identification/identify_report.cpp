@@ -13,7 +13,8 @@ namespace softgrip::sysid {
 namespace {
 
 /// Limits for residuals that count as noise. At least one of two quantities must be below its limit: the RMSE
-/// divided by the noise between consecutive readings, or the correlation between consecutive residuals.
+/// divided by the noise of the readings (fast_noise_mm()), or the magnitude of the correlation between
+/// consecutive residuals.
 constexpr double noise_factor = 1.3;
 constexpr double hardly_correlated = 0.3;
 

@@ -122,7 +122,7 @@ class CorrelatedNoise {
 };
 
 /// Returns a square root of the covariance of the estimates in the coordinates y. The covariance is the root
-/// times its transpose, so that the variance of no combination of parameters can be negative or zero.
+/// times its transpose, so that the variance of no combination of parameters can be negative.
 MatrixXd root_of(MatrixXd meat, const Coordinates& coordinates, const NoiseModel& noise) {
   for (std::size_t k = 0; k < coordinates.unseen.size(); ++k) {
     if (!coordinates.unseen[k]) continue;
