@@ -14,8 +14,9 @@ struct AdviceFacts {
   bool gauge_made = false;  ///< true: the sensor was already checked against a gauge
 };
 
-/// Returns advice on how to separate the causes with the ids `one` and `other`. Each element is a sentence.
-/// Some advice is given even if a waveform separates the causes, for example to record the pressure.
+/// Returns advice on how to separate the causes with the ids `one` and `other`. Each element consists of one
+/// or more sentences. Some advice is given even if a waveform separates the causes, for example to record the
+/// pressure.
 [[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
                                                   const AdviceFacts& facts);
 

@@ -25,8 +25,8 @@ constexpr double top_px = 34;
 struct Row {
   std::string name;
   bool alternative = false;
-  /// Error reduction by the cause; nullptr: no interval of the reduction was computed. An example is a cause
-  /// that no command separates from the named cause.
+  /// Error reduction by the cause; nullptr: the reduction was not computed. An example is a cause that no
+  /// command separates from the named cause.
   const Spread* gain = nullptr;
   double inclusion = 0;
 };
@@ -99,7 +99,7 @@ Figure forest_figure(const Diagnosis& d) {
       canvas.words({number_px, y + 4}, Anchor::start, percent_range(*row.gain),
                    row.alternative ? Colour::muted : Colour::text);
     } else {
-      canvas.words({number_px, y + 4}, Anchor::start, "equal response to every command", Colour::muted);
+      canvas.words({number_px, y + 4}, Anchor::start, "not computed separately", Colour::muted);
     }
     if (!row.alternative) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
     std::vector<std::string> cells{

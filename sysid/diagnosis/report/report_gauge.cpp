@@ -87,14 +87,15 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
                    "Readings outside the slightly widened range of the logs are clipped to this range.",
                {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(gauge));
-  page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
-                 significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
-                 " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
-                 "). In the comparison of two hypotheses, an error of 20 % of the difference between the "
-                 "hypotheses is tolerated in addition to the noise. A hypothesis is ruled out if the most "
-                 "likely hypothesis explains the readings and is at least 1000 times as likely as this "
-                 "hypothesis (a difference of " +
-                 significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
+  page.paragraph(
+      "Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
+      significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
+      " (standard deviation of repeated readings at one position: " + significant(check.repeat_noise_mm, 2) +
+      "). In the comparison of two hypotheses, an error of 20 % of the difference between the "
+      "hypotheses is tolerated in addition to the noise. A hypothesis is ruled out if the most "
+      "likely hypothesis explains the readings and is at least 1000 times as likely as this "
+      "hypothesis (a difference of " +
+      significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
 }
 
 }  // namespace softgrip::sysid

@@ -29,9 +29,9 @@ std::vector<double> readings_alone(std::vector<double> y) {
 /// Limit of the unexplained mean square of the model with causes, as a share of the unexplained mean square
 /// of the refitted model without causes.
 constexpr double may_be_left = 0.15;
-/// A stricter limit for a remaining error far above the noise. Such data determine a complete cause well. A
-/// large remaining error must therefore have another source, but a small one may result from the approximate
-/// equation of the cause.
+/// A stricter limit for a remaining error far above the noise. Data with such a large error determine the
+/// parameters of the causes well. A large remaining share must therefore have another source, but a small
+/// share may result from the approximate equation of a cause.
 struct UnexplainedLimit {
   double noises;  ///< multiple of the noise above which this limit applies
   double share;   ///< limit of the ratio of the mean squares; it replaces may_be_left

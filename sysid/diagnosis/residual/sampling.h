@@ -23,8 +23,8 @@ struct SamplingEvidence {
 ///
 /// A sensor counts as slower than its log under two conditions. At most one reading in ten changes after
 /// fewer than 2 samples. The changes differ in size; the changes of a sensor with a coarse resolution are all
-/// equal to one step. In each interval of equal readings, the first reading is kept. In an interval that is
-/// longer than the median interval, one reading per median interval is kept.
+/// equal to one step. In the log of such a sensor, the first reading of each interval of equal readings is
+/// kept. In an interval that is longer than the median interval, one reading per median interval is kept.
 ///
 /// The reading counts as frozen in an interval of equal readings under three conditions; only the first
 /// reading of such an interval is kept. The interval is at least 5 times as long as the 95 % quantile of all
