@@ -123,8 +123,8 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
   return all;
 }
 
-/// Returns the kinds of filter banks that are tried. If the pressure is not recorded, the filter bank may
-/// have to represent the valve in addition to the finger.
+/// Returns the kinds of filter banks that are tried. If the input is the command, the filter bank may have to
+/// represent the valve in addition to the finger.
 std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
   if (judged == Judged::pressure) return {FilterKind::valve};
   if (drive == Drive::measured) return {FilterKind::finger};

@@ -95,9 +95,10 @@ struct JudgedChange {
   double explained_mm = 0;  ///< RMS error in the later logs if the effects of the causes are added to the
                             ///< baseline model
   /// Mean square of the whitened residual in the later logs, without the causes (`loss_before`) and with the
-  /// causes (`loss_left`). It is 1 in the healthy logs.
+  /// causes (`loss_left`). A healthy log has a mean square of about 1.
   double loss_before = 1, loss_left = 1;
-  double zero_mm = 0;  ///< change of the sensor's zero offset since the healthy logs
+  /// Zero offset of the later readings relative to the predictions of the baseline model.
+  double zero_mm = 0;
   /// Fitted deviation of the gain from the gain in the healthy logs [%]. It is within the spread of the
   /// healthy logs, so it does not count as a change.
   double gain_percent = 0;

@@ -111,7 +111,8 @@ class Judge {
                                   {}});
       }
       // The search for a further cause continues only if the remaining error exceeds the error that is
-      // expected in a further healthy run.
+      // expected in a further healthy run. For the first cause, a smaller error may be sufficient
+      // (admits_a_change()).
       const double rms = readings.plain_rms(found);
       const bool is_comparable = step == 0 && other_starts.empty();
       if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
@@ -186,7 +187,7 @@ class Judge {
   /// Returns true if the effect increases the prediction error of left-out later runs. The effect is fitted
   /// to all runs except one and then predicts this run. A run in which the effect does not occur has no
   /// influence on the result, because its two errors are equal. For example, a run may not reach the
-  /// saturation of a sensor.
+  /// saturation of a sensor. The result is false for a free-form effect.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
                                     const std::vector<FittedEffect>& found) const {
     PairedLosses losses;
