@@ -26,8 +26,8 @@ struct Combination {
 [[nodiscard]] std::vector<Combination> combinations_of(const model::Model& model);
 
 /// Returns beta / (alpha + 1/k0) of the Bouc-Wen element of a model, or 0 if the model has no such element.
-/// The denominator is the instantaneous gain. If the ratio is 1 or more, the model has an inverse response:
-/// its displacement first moves opposite to a change of the command.
+/// The denominator is the instantaneous gain. If the ratio is above 1, the model has an inverse response: its
+/// displacement first moves opposite to a change of the command.
 [[nodiscard]] double beta_over_gain(const model::Model& model);
 /// Returns the warning for a model whose ratio beta_over_gain() is above 1.
 [[nodiscard]] std::string wrong_way_sentence(double beta_over_gain);

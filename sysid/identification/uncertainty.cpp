@@ -30,8 +30,9 @@ struct Coordinates {
 };
 
 Coordinates coordinates_of(const MatrixXd& bread) {
-  // A smaller singular value cannot be distinguished from the rounding errors of the simulation. The smallest
-  // value limits the standard deviation of such a direction to a finite, but very large, number.
+  // Share of the largest singular value below which a singular value cannot be distinguished from the
+  // rounding errors of the simulation. This lower limit keeps the standard deviation of such a direction
+  // finite, but very large.
   constexpr double resolution = 1e-10;
   const Eigen::VectorXd scale = bread.colwise().norm().transpose().cwiseMax(1e-150).cwiseInverse();
   MatrixXd scaled = MatrixXd::Zero(std::max(bread.rows(), bread.cols()), bread.cols());

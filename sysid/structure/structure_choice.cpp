@@ -25,7 +25,8 @@ constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 /// Index of the ridge parameter whose fit starts from all start points. The fits with the other ridge
 /// parameters start at the nonlinear parameters of this fit.
 constexpr std::size_t first_ridge = 2;
-/// Largest number of linear modes. A linear output-error model of order 6 has as many poles.
+/// Largest number of linear modes. Each mode has two poles, so three modes have as many poles as a linear
+/// output-error model of order 6.
 constexpr std::size_t most_modes = 3;
 
 /// Returns the candidate structures. The first one is the simplest.
@@ -68,8 +69,8 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// Returns the index of the first trial whose loss exceeds the lowest loss by at most one standard error. The
-/// comparison starts at the index `first`.
+/// Returns the index of the first trial that may be chosen and whose loss exceeds the lowest loss by at most
+/// one standard error. The comparison starts at the index `first`.
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = first; i < best; ++i) {
@@ -163,7 +164,7 @@ void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoi
 
 /// Tries linear modes in two forms: alone, and in parallel with the chosen structure. The second form takes
 /// longer. It is tried only if the modes alone were chosen or if a fast test shows that linear dynamics are
-/// missing.
+/// missing. Neither form is tried if the error of the chosen structure is noise.
 void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOptions& options,
                         StructureChoice& choice) {
   const std::vector<StructureTrial>& trials = choice.trials;

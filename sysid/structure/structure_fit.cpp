@@ -271,6 +271,7 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
 /// Returns each start point with several rate limits, which replace three quarters of each lag. A lag that
 /// was fitted to a ramp of duration T has a time constant of about T / 1.5. The share of the pressure range
 /// that the ramp covers is unknown. A rate limit that is too fast has no effect, so three shares are tried.
+/// Start points that already contain rate limits are returned unchanged.
 std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumbers>& starts,
                                                const StructureGrid& grid) {
   std::vector<NonlinearNumbers> limited;
