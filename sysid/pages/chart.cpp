@@ -194,7 +194,8 @@ class Painter {
 
   /// Draws each point as a stroke of length 0 with round ends. In the colours `error` and `other`, a point is
   /// a short stroke with square ends instead. The length of this stroke is above 0, because PDF renderers
-  /// draw a square end only if the stroke has a direction.
+  /// draw a square end only if the stroke has a direction. If there are too many points (distinct_dots()),
+  /// draws the area that they cover.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);

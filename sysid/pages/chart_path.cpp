@@ -67,8 +67,8 @@ std::vector<Pixel> thinned_by_column(const std::vector<Pixel>& curve) {
   return kept;
 }
 
-/// Removes points whose distance from the last kept point is below `least_px`, and strokes that were already
-/// drawn.
+/// Rounds the points to a grid of 1/3 pixel. Removes points whose distance from the last kept point is at
+/// most `least_px`, and strokes that were already drawn.
 std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double least_px) {
   constexpr double grid = 1.0 / 3.0;
   std::vector<Pixel> kept;
