@@ -36,7 +36,7 @@ struct CauseForm {
   /// parameter apply too. Outside the returned range, the block would represent a different effect.
   Range (*range)(std::size_t index, const Scales& scales, const model::Model& model) = nullptr;
   /// Function that returns the reading of a sensor with this block [mm] at a displacement [mm]. Null: the
-  /// form does not describe the static shape of a sensor (sensor_shape).
+  /// form does not describe the static curve of a sensor (sensor_shape).
   double (*shown_mm)(const model::BlockSpec& block, double displacement_mm) = nullptr;
 };
 
@@ -58,7 +58,8 @@ struct Cause {
   bool makes_distinguishable = false;
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
-  /// Description of the static shape of the sensor; empty: the cause is not a static sensor.
+  /// Description of the static curve of the sensor, for example "a nonlinear sensor scale"; empty: the cause
+  /// does not change this curve.
   std::string_view sensor_shape;
   WhenChanged when_changed;
 

@@ -44,7 +44,7 @@
 //       no mechanism matches this ideal exactly, so another cause with an equal loss and equally many
 //       parameters is named instead
 //   static constexpr std::string_view sensor_shape = "...";
-//       description of the static shape of the sensor, which a gauge check can detect
+//       description of the static curve of the sensor, which a gauge check can detect
 //   static constexpr Appears appears = ...;
 //       readings in which the effect of the cause must appear (evidence/signature.h)
 //   static constexpr bool found_by_fitting = false;

@@ -23,7 +23,8 @@ constexpr double memories_per_block = 8;
 constexpr std::size_t fewest_blocks = 12;
 
 /// Returns the correlation time of the residual without its white noise [s]. It is the integral of the
-/// autocorrelation from the first lag on, divided by the autocorrelation at the first lag.
+/// autocorrelation from the first lag on, divided by the autocorrelation at the first lag, and at least
+/// interval_s.
 double memory_s(const Samples& samples, const std::vector<double>& residual, double interval_s) {
   const double mean =
       std::accumulate(residual.begin(), residual.end(), 0.0) / static_cast<double>(residual.size());

@@ -48,8 +48,8 @@ struct JudgedWaveform {
                      ///< 0, one above 40 as 40
 };
 
-/// A proposed check of the sensor at known positions. It separates causes that imply different static shapes
-/// of the sensor, even if no waveform separates them.
+/// A proposed check of the sensor at known positions. It separates causes that imply different static curves
+/// of the sensor (reading over displacement), even if no waveform separates them.
 struct ProposedGaugeCheck {
   /// Positions in the order in which the operator reads the sensor.
   std::vector<double> positions_mm;

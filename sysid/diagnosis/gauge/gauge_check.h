@@ -1,5 +1,6 @@
 #pragma once
-// Tests hypotheses about the static shape of a sensor against readings at known positions.
+// Tests hypotheses about the static curve of a sensor (reading over displacement) against readings at known
+// positions.
 //
 // Every hypothesis predicts reading = S(zero + scale * gauge) with unknown zero and scale. The function S
 // consists of the static blocks of the sensor; if there are no such blocks, S is a straight line. Readings
@@ -24,10 +25,12 @@
 
 namespace softgrip::sysid {
 
-/// Returns the blocks of a model that define the static shape of the sensor, in the order of the signal path.
+/// Returns the blocks of a model that define the static curve of the sensor (reading over displacement), in
+/// the order of the signal path.
 [[nodiscard]] std::vector<model::BlockSpec> static_sensor_blocks(const model::Model& model);
 
-/// A hypothesis about the static shape of the sensor.
+/// A hypothesis about the static curve of the sensor (reading over displacement), here called the sensor
+/// shape.
 struct SensorShape {
   std::vector<model::BlockSpec> blocks;  ///< blocks that define the shape (static_sensor_blocks()); empty:
                                          ///< the sensor is linear

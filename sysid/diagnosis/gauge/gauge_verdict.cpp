@@ -25,7 +25,7 @@ struct Standing {
 
 /// A possible explanation of the logs: for each named cause, either this cause or its replacement.
 struct Explanation {
-  /// for each named cause, the index of the cause that this explanation contains
+  /// for each named cause, what this explanation contains; 0: the named cause, i > 0: its i-th replacement
   std::vector<std::size_t> standing;
   std::size_t shape = 0;
 };
@@ -264,7 +264,7 @@ class Weighing {
     return "saturated at " + significant(end.shape.at(1e6), 3) + unit();
   }
 
-  /// Returns true if the logs alone do not decide between different shapes of the sensor.
+  /// Returns true if the logs alone do not decide between different static curves of the sensor.
   [[nodiscard]] bool is_asked() const {
     return std::any_of(places_.begin(), places_.end(), [](const std::vector<Standing>& standing) {
       return std::any_of(standing.begin(), standing.end(), [&](const Standing& s) {

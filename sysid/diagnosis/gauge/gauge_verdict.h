@@ -30,7 +30,7 @@ struct GaugeQuestion {
 };
 
 /// Returns true if a gauge can separate the two causes. This is possible if the causes differ in the static
-/// shape of the sensor.
+/// curve of the sensor (reading over displacement).
 [[nodiscard]] bool gauge_tells_apart(const Cause& one, const Cause& other);
 
 /// Returns the noise and the range of the readings in the logs.

@@ -86,7 +86,8 @@ void add_appendix(Page& page, const DiagnosisReport& report);
 /// The chart shows deviations from the straight line that fits the readings best.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
-/// Returns the fields of a hypothesis about the shape of the sensor that was tested with the gauge readings.
+/// Returns the fields of a hypothesis about the static curve of the sensor. The hypothesis was tested with
+/// the gauge readings.
 [[nodiscard]] result::Fields hypothesis_fields(const GaugeFit& fit, model::OutputUnit unit);
 /// Adds the section about the gauge check to the page.
 void add_gauge_section(Page& page, const GaugeEvidence& gauge);

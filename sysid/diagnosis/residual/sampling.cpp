@@ -13,9 +13,10 @@ namespace {
 /// Largest ratio of the smallest changes of the reading to the typical change for which the resolution of a
 /// sensor counts as fine.
 constexpr double fine_share = 0.25;
-/// A reading counts as frozen if two conditions hold. An interval of equal readings is at least
+/// A reading counts as frozen if three conditions hold. An interval of equal readings is at least
 /// `frozen_ratio` times as long as the 95 % quantile of such intervals. During the interval, the drive
-/// changes by more than `moved_share` of its range.
+/// changes by more than `moved_share` of its range. The reading is neither the lowest nor the highest one of
+/// its log.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
 /// An interval of equal consecutive readings. `first` is an index of the vector `samples`.
@@ -64,7 +65,8 @@ bool is_fine(const Record& record, const Stretches& readings) {
   return quantile(changes, 0.05) < fine_share * quantile(changes, 0.5);
 }
 
-/// Returns the number of samples from one new reading to the next; 1: each sample is a new reading.
+/// Returns the median number of samples from one new reading to the next. Returns 1 if the sensor does not
+/// count as slower than its log (see hide_repeated()).
 std::size_t samples_per_reading(const Record& record, const Stretches& readings) {
   const std::vector<double> lengths = whole_lengths(readings);
   if (lengths.size() < limits::fewest_events || quantile(lengths, 0.1) < 2 || !is_fine(record, readings))

@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 
 struct SamplingEvidence {
-  double interval_s = 0;  ///< median time between new readings; 0: each sample is a new reading
+  double interval_s = 0;  ///< median time between new readings; 0: no sensor counts as slower than its log
   double frozen_s = 0;    ///< total time during which the reading is frozen although the drive changes
   /// Root mean square error of all readings that the repetitions cause. The error of a repeated reading is
   /// its distance from a line through the new readings.
@@ -21,10 +21,12 @@ struct SamplingEvidence {
 
 /// Replaces repeated readings by NaN if `present` becomes true.
 ///
-/// A sensor counts as slower than its log under two conditions. At most one reading in ten changes after
-/// fewer than 2 samples. The changes differ in size; the changes of a sensor with a coarse resolution are all
-/// equal to one step. In the log of such a sensor, the first reading of each interval of equal readings is
-/// kept. In an interval that is longer than the median interval, one reading per median interval is kept.
+/// A sensor counts as slower than its log under three conditions. The log contains at least
+/// limits::fewest_events complete intervals of equal readings. At most one in ten of these intervals contains
+/// only one sample. The changes between the intervals differ in size; the changes of a sensor with a coarse
+/// resolution are all equal to one step. In the log of such a sensor, the first reading of each interval of
+/// equal readings is kept. In an interval that is longer than the median interval, one reading per median
+/// interval is kept.
 ///
 /// The reading counts as frozen in an interval of equal readings under three conditions; only the first
 /// reading of such an interval is kept. The interval is at least 5 times as long as the 95 % quantile of all

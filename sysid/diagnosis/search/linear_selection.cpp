@@ -320,8 +320,8 @@ class SelectorUpon {
   }
 
   /// Returns true if the candidate can be named. Its loss must be significantly lower than without it. Every
-  /// other candidate that fits nearly as well becomes its alternative. If there are more than most_undecided
-  /// alternatives, no cause is named and the result is false.
+  /// other candidate that fits nearly as well becomes its alternative, unless it is a free form. If there are
+  /// more than most_undecided alternatives, no cause is named and the result is false.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {

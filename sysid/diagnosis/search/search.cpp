@@ -121,7 +121,7 @@ class CandidateFitter {
   }
 
  private:
-  /// Returns all causes that are permitted and that the structure does not contain yet.
+  /// Returns all permitted causes that a fit can find and that the structure does not contain yet.
   [[nodiscard]] std::vector<Candidate> wanted() const {
     std::vector<Candidate> list;
     for (const Cause& cause : search_.only.empty() ? all_causes() : std::span(search_.only)) {

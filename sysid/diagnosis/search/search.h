@@ -30,7 +30,7 @@ struct SearchData {
 /// Prepares a campaign for the search: computes the thinned copies of the records, and the scales.
 [[nodiscard]] SearchData make_search_data(std::vector<Record> records, const model::Model& given);
 
-/// A cause and its fit. If the cause was not fitted, `why_not` states the reason.
+/// A cause and its fit. If the cause was not fitted or was rejected, `why_not` states the reason.
 struct Candidate {
   Cause cause;
   std::optional<StructureFit> fit;
@@ -38,16 +38,18 @@ struct Candidate {
 };
 
 struct CandidateSearch {
-  std::vector<Cause> only = {};  ///< causes that are tested; empty: all causes
+  std::vector<Cause> only = {};  ///< causes that may be tested; empty: all causes
   /// Function that receives the smallest mean square of all candidates. It returns true if the other
   /// candidates need no full fit.
   std::function<bool(double best_mm2)> is_hopeless = {};
-  /// Function that receives the number of tested causes and the number of all causes. Any thread may call it.
+  /// Function that receives the number of tested causes and the number of causes to test. Any thread may call
+  /// it.
   std::function<void(std::size_t tried, std::size_t of)> progress = {};
 };
 
-/// Fits the structure `current` with one additional cause, for each cause that `current` does not contain.
-/// The results have the order of all_causes().
+/// Fits the structure `current` with one additional cause, for each cause that a fit can find
+/// (Cause::found_by_fitting) and that `current` does not contain. The results have the order of search.only,
+/// or of all_causes() if this list is empty.
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                                     const CandidateSearch& search = {});
 

@@ -17,7 +17,7 @@ namespace {
 
 /// Number of candidates whose held-out losses are computed. Each of them is refitted for each fold.
 constexpr std::size_t finalists = 4;
-/// Mean square of the residual below which it counts as explained, as a multiple of the squared noise.
+/// Mean square below which a residual counts as explained, as a multiple of the squared noise.
 constexpr double near_the_noise = 2;
 
 class Selector {
@@ -175,7 +175,8 @@ class Selector {
   }
 
   /// Compares each earlier cause with all other causes. This is necessary because a further cause was added
-  /// after the selection of the earlier one. If another cause is better, it replaces the earlier cause.
+  /// after the selection of the earlier one. If another cause predicts better and passes veto_of(), it
+  /// replaces the earlier cause, and the comparison ends.
   void swap_others() {
     for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
       const Cause old = result_.extended.causes[i];

@@ -125,7 +125,7 @@ void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearc
 
 /// Refits the base structure without causes. The free parameters are the same as in the fit with a cause.
 /// With fewer free parameters, the error reduction by the additional parameters would be attributed to the
-/// cause.
+/// cause. The refit is used only if its loss is lower than the current one.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const BaseSearch& search) {
   const auto& [data, plain, question] = search;
   const bool is_free = found.chosen.structure == as_beside_causes.structure &&

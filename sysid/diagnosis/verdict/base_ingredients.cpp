@@ -133,7 +133,7 @@ class Labeller {
 /// Returns the latency of the finger as a finding: the delay or the lag. Each of them can largely replace the
 /// other, so the data may require neither of them although the finger responds late. The finding is the
 /// component whose removal increases the loss more; it represents both. Returns nullopt if a delay or a lag
-/// is already named.
+/// is already named, or if no structure without both was fitted.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

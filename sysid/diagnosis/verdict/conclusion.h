@@ -22,8 +22,9 @@ class Conclusion {
              const SearchData& data, Diagnosis& diagnosis)
       : logs_(logs), given_(given), options_(options), data_(data), d_(diagnosis) {}
 
-  /// Errors before the drive was shifted in time: `as_given_rmse_mm` and `recalibrated` belong to the
-  /// original drive. `shifted` contains the held-out losses with the shifted drive.
+  /// Errors of the given model (`as_given_rmse_mm`) and held-out losses of the refitted model
+  /// (`recalibrated`) with the original drive, and held-out losses with the drive shifted in time
+  /// (`shifted`).
   struct Unshifted {
     double as_given_rmse_mm = 0;
     BlockLosses recalibrated, shifted;

@@ -210,8 +210,9 @@ class Diagnostician {
     return true;
   }
 
-  /// Shifts the drive of the records in time if the readings react before the command changes. Returns true
-  /// if the drive was shifted; the search for causes must then be repeated.
+  /// Shifts the drive of the records in time if the readings react before the command changes and the shift
+  /// reduces the held-out error significantly. Returns true if the drive was shifted; the search for causes
+  /// must then be repeated.
   bool shift_drive(const Selection& selection, const Division& division) {
     std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
     if (!shifted) return false;
