@@ -23,7 +23,8 @@ constexpr double largest_logarithm = 6;
 constexpr double least_progress = 0.003;
 /// Penalty if a parameter differs from its typical value by a factor of e, as a share of the sum of squared
 /// residuals. The penalty keeps a parameter that the readings do not determine at its typical value. For
-/// example, the lags of the filter bank can replace a wide tube.
+/// example, the readings do not determine the conductance of a wide tube, because the lags of the filter bank
+/// can have the same effect.
 constexpr double prior_share = 0.003;
 
 /// Returns the regulator with the coordinates t. A coordinate is the logarithm of (parameter / typical
