@@ -115,8 +115,8 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
-  // Noise alone causes no outliers above the limit `beyond`, but a knock on the table can cause a few.
-  // Therefore a minimum number of outliers is required.
+  // Noise alone causes practically no outliers above the limit `beyond`, but a knock on the table can cause a
+  // few. Therefore a minimum number of outliers is required.
   evidence.distorts = evidence.excess_mm > limits::hidden_by_noise * noise_mm;
   evidence.present = evidence.count >= limits::fewest_occurrences && evidence.distorts;
 }

@@ -18,8 +18,8 @@ struct CandidateScore {
   Cause cause;
   std::string why_not;         ///< reason why the candidate was not fitted or was rejected
   double rmse_mm = 0;          ///< RMSE of the fit of the candidate to all readings
-  double heldout_rmse_mm = 0;  ///< RMSE on held-out blocks; NaN: not computed, because enough other
-                               ///< candidates have a smaller `rmse_mm`
+  double heldout_rmse_mm = 0;  ///< RMSE on held-out blocks; NaN: not computed, because the candidate was not
+                               ///< fitted or enough other candidates have a smaller `rmse_mm`
   Spread gain_percent;         ///< held-out error reduction, compared with the structure without the
                                ///< candidate
 };

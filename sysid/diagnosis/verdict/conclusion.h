@@ -60,8 +60,9 @@ class Conclusion {
   /// If the drive was shifted in time, recomputes the error reduction so that it includes the effect of the
   /// shift. The errors of the given and the refitted model are then the errors with the original drive.
   void count_shift(const BlockLosses& extended);
-  /// Returns the model with a new name. Two models with the same name could not be distinguished in files and
-  /// figures.
+  /// Returns the model with a new name and source. Two models with the same name could not be distinguished
+  /// in files and figures. If the drive is the measured pressure and a valve model was found, the blocks of
+  /// the valve are added.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const;
   [[nodiscard]] std::vector<NamedCause> found_in_readings() const;
 
