@@ -23,8 +23,8 @@ constexpr int chain_search_iterations = 40;
 /// Number of samples in the coarse fits, which start at many points. With a larger number of samples, the
 /// coarse fits do not find better minima.
 constexpr std::size_t samples_of_a_look = 4000;
-/// A search is repeated with a larger initial damping if its RMSE exceeds the lowest RMSE of all searches by
-/// this factor.
+/// A search is repeated with a larger initial damping if its RMSE is above this multiple of the lowest RMSE
+/// of all searches.
 constexpr double higher = 1.02;
 constexpr double slow_damping = 10;
 /// A minimum is refined on all samples if its RMSE is at most this multiple of the lowest RMSE.

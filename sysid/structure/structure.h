@@ -55,8 +55,8 @@ struct BaseStructure {
 /// Returns the name of a hysteresis form as the option `--structure` of softgrip identify expects it:
 /// "prandtl_ishlinskii" or "bouc_wen".
 [[nodiscard]] std::string_view name_of(HysteresisForm form);
-/// Returns the name of the element with the largest part in a structure: that of its form of hysteresis, or
-/// "linear_modes" for a linear structure.
+/// Returns the name of the main element of a structure: its form of hysteresis, or "linear_modes" for a
+/// linear structure.
 [[nodiscard]] std::string_view name_of(const BaseStructure& structure);
 /// Returns a description of the structure, for example "play operators, creep ladder, delay, lag (filling and
 /// venting), characteristic".
