@@ -21,7 +21,8 @@ constexpr double far = 0.1;
 /// covers a larger share.
 constexpr double on_its_way = 0.5;
 
-/// Returns the number of samples at the beginning of the log during which the command is constant.
+/// Returns the number of samples at the beginning of the log whose commands differ from the first command by
+/// less than 5 % of the range of the commands.
 std::size_t stands_for(const Log& log, double range_kpa) {
   const std::vector<double>& command = log.pressure_command_kpa;
   std::size_t count = 1;

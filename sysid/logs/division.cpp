@@ -12,8 +12,8 @@ namespace {
 /// fitted.
 constexpr double gap_share = 0.1;
 constexpr std::size_t fewest_blocks = 8;
-/// If there are fewer blocks than this, they are divided into four folds, because half of the blocks does not
-/// determine a model. Otherwise the blocks are divided into two folds.
+/// If there are fewer blocks than this, they are divided into four folds, because half of so small a number
+/// of blocks does not determine a model. Otherwise the blocks are divided into two folds.
 constexpr std::size_t enough_to_halve = 16;
 constexpr std::size_t fifths = 5;
 constexpr double blocks_of_fifths = 10;

@@ -24,26 +24,28 @@ struct Block {
   std::size_t hidden_last = 0;
 };
 
-/// A division of the readings of all records into held-out blocks. Adjacent blocks belong to different folds.
+/// A division of the readings of all records into held-out blocks. Adjacent blocks belong to different folds
+/// if there are several folds.
 struct Division {
   std::vector<Block> blocks;
   std::size_t folds = 2;
-  /// Width of the gap on either side of a held-out block [s]. Readings in the gap are not fitted.
+  /// Width of the gap that divide() puts on either side of a held-out block [s]. Readings in the gap are not
+  /// fitted. 0: only hidden_first and hidden_last define the gaps.
   double gap_s = 0;
 };
 
-/// Divides records into blocks of about `block_s` [s], at least eight in total. The gap is 10 % of a block.
+/// Divides records into blocks of about `block_s` [s], or of 1/8 of the total duration if this is shorter.
+/// The gap is 10 % of a block.
 [[nodiscard]] Division divide(const std::vector<Record>& records, double block_s);
 /// Returns a division of the thinned records `thinned`. Its blocks cover the same times as the blocks of
 /// `division`, which divides `records`.
 [[nodiscard]] Division thinned_like(Division division, const std::vector<Record>& records,
                                     const std::vector<Record>& thinned);
-/// Divides records into about ten blocks in five folds. If there are several records, each has at least two
-/// blocks; a single record has at least five. In addition, readings within 10 % of a block length on either
-/// side of a held-out block are not fitted.
+/// Divides records into about ten blocks in five folds. Each record has at least two blocks. In addition,
+/// readings within 10 % of a block length on either side of a held-out block are not fitted.
 [[nodiscard]] Division divide_into_fifths(const std::vector<Record>& records);
-/// Divides records for continuation. The first half of each record is fitted. The second half is held out as
-/// one fold with five blocks.
+/// Divides records for continuation. The first half of each record is fitted. The second halves are held out
+/// together (one fold), each as five blocks.
 [[nodiscard]] Division divide_into_halves(const std::vector<Record>& records);
 
 /// Removes the readings in [first, last) from a record and updates its number of readings.

@@ -12,8 +12,8 @@ constexpr double unloaded_share = 0.2;
 constexpr double no_pressure_share = 0.02;
 constexpr double long_enough_s = 3;
 constexpr double same_amplitude_share = 0.05;
-/// Two commands count as equal if their difference is below this value, because files have at most six
-/// decimals.
+/// Two commands count as equal if their difference is below this value, which is larger than the rounding
+/// errors in files.
 constexpr double same_command_kpa = 1e-6;
 
 std::vector<double> sizes_of(const Log& log) {

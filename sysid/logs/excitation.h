@@ -14,15 +14,16 @@ namespace softgrip::sysid {
 
 /// Motions that the logs of a fit should contain.
 enum class Excitation : std::uint8_t {
-  unloading,  ///< a decrease of the pressure by at least 20 % of the largest pressure
-  rest,       ///< pressure below 2 % of the largest pressure for more than 3 s
-  /// Two peaks whose pressures differ by at least 5 % of the largest pressure. Each peak must exceed the next
-  /// turning point by 5 % of the largest pressure.
+  unloading,  ///< a decrease of the pressure by more than 20 % of the largest pressure
+  rest,       ///< constant command below 2 % of the largest pressure for more than 3 s
+  /// Two peaks whose pressures differ by at least 5 % of the largest pressure. After each peak, the pressure
+  /// must fall by more than 5 % of the largest pressure.
   amplitudes,
 };
 
-/// Returns the motions that no log contains. Pressures are compared by their magnitudes. If the commands are
-/// vacuum pressures, the lowest pressure therefore counts as the largest.
+/// Returns the motions that no log contains, but returns `amplitudes` only if the logs contain a peak.
+/// Pressures are compared by their magnitudes. If the commands are vacuum pressures, the lowest pressure
+/// therefore counts as the largest.
 [[nodiscard]] std::vector<Excitation> missing_excitation(const std::vector<Log>& logs);
 
 /// Returns a sentence about a missing motion. The sentence names the effect that cannot be determined without

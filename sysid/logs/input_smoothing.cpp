@@ -17,7 +17,7 @@ constexpr double least_turn = 5;
 /// the response of a model.
 constexpr double negligible_share = 1e-4;
 
-/// Returns the difference between the largest and the smallest finite value; a negative number if no value is
+/// Returns the difference between the largest and the smallest finite value; minus infinity if no value is
 /// finite.
 double range_of(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -97,7 +97,7 @@ double filter(const Path& path, double drift_rate, std::vector<Estimate>* before
 double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  // With this drift rate, the standard deviation of the drift within one sampling interval equals the
+  // With this drift rate, the drift of the slope changes the level in one sampling interval by about one
   // standard deviation of the noise.
   const double unit = path.noise * path.noise / (dt * dt * dt);
   double low = std::log(unit) - 20, high = std::log(unit) + 12;

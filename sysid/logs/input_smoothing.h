@@ -23,9 +23,9 @@ namespace softgrip::sysid {
 [[nodiscard]] std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values,
                                            double noise);
 
-/// Smooths a column in place if its noise exceeds 1e-4 of its range. Smaller noise is assumed to come from
-/// rounding. Then removes reversals that are smaller than five times the noise (excitation.h). Returns
-/// the noise, or 0 if the column was not changed.
+/// Smooths a column in place if its noise exceeds 1e-4 of its range; smaller noise hardly affects the
+/// response of a model. Then removes reversals that are smaller than five times the noise (excitation.h).
+/// Returns the noise, or 0 if the column was not changed.
 double smooth_input(std::span<const double> time_s, std::vector<double>& values);
 
 }  // namespace softgrip::sysid

@@ -43,7 +43,8 @@ struct Sampling {
   double shortest_interval_s = 0;
   double longest_interval_s = 0;
   double jitter_s = 0;   ///< mean absolute deviation of the intervals from their median interval
-  bool regular = false;  ///< true: every interval differs from the median interval by at most 0.1 %
+  bool regular = false;  ///< true: the longest and the shortest interval differ by at most 0.2 % of the
+                         ///< median interval
 
   /// Returns the median interval [s] if the intervals are regular, otherwise 0.
   [[nodiscard]] double sample_time_s() const { return regular ? median_interval_s : 0; }
@@ -53,7 +54,8 @@ struct Sampling {
 /// instead.
 struct Log {
   std::string path;  ///< path of the file as the user wrote it
-  /// Name of the log in legends: the file name without folder and extension, followed by the channel.
+  /// Name of the log in legends: the file name without folder and extension (for a recording, the name of its
+  /// folder), followed by the channel.
   std::string name;
   std::string channel;  ///< channel of the log; "" if the file has no channel column
   /// SHA-256 of the bytes of the file in lower-case hexadecimal; "" for a log that was created in memory.
@@ -79,8 +81,8 @@ struct LogOptions {
   /// True: a log with a constant command or a constant reading is refused, because such a log cannot identify
   /// a model.
   bool require_motion = true;
-  /// False: only the command is used. A log then needs only two samples, at any sampling interval, and the
-  /// column displacement_mm may be absent.
+  /// False: only the command is used. A log then needs only two samples, gaps between samples are not
+  /// checked, and the column displacement_mm may be absent.
   bool need_readings = true;
   /// If this unit is set, readings in a different unit are refused. `output_unit_of` names the origin of this
   /// unit ("the model given.yaml"). If this unit is not set, all logs of a campaign must have the unit of the
@@ -97,8 +99,8 @@ struct LogOptions {
 /// Logs that are given together to one command.
 struct Campaign {
   std::vector<Log> logs;
-  /// True: a file could not be opened or read because of an I/O error. An error in the content of a file does
-  /// not count.
+  /// True: a file could not be opened or read, or a folder contains no run.csv. An error in the content of a
+  /// file does not count.
   bool unreadable = false;
 };
 
@@ -126,7 +128,7 @@ struct Campaign {
 /// Returns statistics of the sampling intervals of a log with at least two samples.
 [[nodiscard]] Sampling sampling_of(const Log& log);
 
-/// Returns the highest commanded pressure of the logs [kPa]; 0 if the logs have no samples.
+/// Returns the highest commanded pressure of the logs [kPa]; 0 if no command is above 0.
 [[nodiscard]] double largest_command_kpa(const std::vector<Log>& logs);
 
 /// Returns the difference between the largest and the smallest reading [mm]; 0 if the log has no readings.

@@ -25,8 +25,9 @@ constexpr double largest_displacement_mm = 5000;
 /// Longest accepted median sampling interval [s]. Even slow processes, such as furnaces, are sampled at
 /// intervals of a few minutes.
 constexpr double longest_median_interval_s = 600;
-/// Limit of the duration of a gap between two samples [s]. A gap is reported if its duration exceeds this
-/// limit and `hole_intervals` usual intervals, and if the command changes during the gap.
+/// Limit of the interval between two samples [s]. A log is refused if an interval exceeds this limit and
+/// `hole_intervals` median intervals, and if the command changes in this interval by more than 2 % of its
+/// range.
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;

@@ -68,7 +68,7 @@ class LogReporter {
 
   void add(const std::string& kind, document::Location at, std::string_view line, std::string message,
            std::string hint = {});
-  /// Adds, for each kind of problem, one problem that states how many problems of this kind are not shown.
+  /// For each kind with more than three problems, adds a problem that states how many of them are not shown.
   void finish();
   [[nodiscard]] bool any() const { return !counts_.empty(); }
 

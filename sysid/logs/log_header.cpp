@@ -9,8 +9,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reports an unknown column name that is similar to a name of the log format, and suggests the name of the
-/// log format.
+/// Reports a column whose name is that of a column of the log format, but without a unit or with another
+/// unit. Suggests the name of the log format.
 void report_near_miss(const Cell& cell, std::string_view name, std::string_view line, LogReporter& report) {
   for (const KnownColumn& known : known_columns) {
     const std::string_view unit = known.name.substr(known.quantity.size() + 1);
@@ -51,7 +51,7 @@ bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, 
   return true;
 }
 
-/// Returns the first column of the header that can contain the readings.
+/// Returns the first element of `reading_columns` whose name occurs in the header.
 std::optional<ReadingColumn> reading_column(const std::vector<Cell>& cells) {
   for (const ReadingColumn& column : reading_columns) {
     if (std::any_of(cells.begin(), cells.end(),

@@ -13,8 +13,8 @@
 namespace softgrip::sysid {
 namespace {
 
-// Limits for plausible values. A value above its limit in this file, or below its limit in unit_factors.h,
-// probably has a wrong unit.
+// Limits for plausible values. A value beyond a limit in this file or in unit_factors.h probably has a wrong
+// unit.
 constexpr double large_pressure_kpa = 1000;
 /// If the pressure of a soft finger is in MPa, its largest value is below this limit.
 constexpr double small_as_mpa = 0.2;
@@ -92,9 +92,9 @@ const std::vector<double>& drive_of(const Log& log) {
   return log.pressure_kpa.empty() ? log.pressure_command_kpa : log.pressure_kpa;
 }
 
-/// Returns the mean area of the loops in a plot of the readings over the pressure. The area of each loop is
-/// divided by the area of its bounding rectangle. The result is positive if the readings lag behind the
-/// pressure, as in every dissipative system.
+/// Returns the mean area of the loops in a plot of the readings over the pressure, divided by the area of the
+/// bounding rectangle of the plot. The travel of the pressure determines the number of loops. The result is
+/// positive if the readings lag behind the pressure, as in every dissipative system.
 double loop_share(const std::vector<double>& pressure, const std::vector<double>& reading) {
   const auto p = extent_of(pressure), y = extent_of(reading);
   if (!p || !y || p->width() <= 0 || y->width() <= 0) return 0;

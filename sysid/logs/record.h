@@ -107,16 +107,16 @@ struct Record {
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
 /// Returns the unit of time in which a fit searches for dead times, lags and creep [s]. The unit is 1 s if
-/// two conditions are met: 10 sampling intervals are at most 1 s, and half of the longest record is at least
-/// 1 s. Otherwise the unit is the geometric mean of the shortest sampling interval and the length of the
-/// longest record.
+/// two conditions are met: 10 sampling intervals (the smallest `finest_interval_s` of the records) are at
+/// most 1 s, and half of the longest record is at least 1 s. Otherwise the unit is the geometric mean of this
+/// interval and the length of the longest record.
 /// @param records  at least one record.
 [[nodiscard]] double time_unit_s(const std::vector<Record>& records);
 
 /// Returns the unit of pressure in which a fit searches for gains and rates per kPa [kPa]. The unit is 1 kPa
-/// if the largest pressure is at least 20 kPa, as it is for soft fingers. Otherwise the unit is a twentieth
-/// of the largest pressure, for example if the pressures of a log are in MPa. @param records  at least one
-/// record.
+/// if the largest pressure is at least 20 kPa, as it is for soft fingers. Otherwise the unit is 5 % of the
+/// largest pressure, for example if the pressures of a log are in MPa.
+/// @param records  at least one record.
 [[nodiscard]] double pressure_unit_kpa(const std::vector<Record>& records);
 
 /// Sets the reading of a sample to NaN and updates the number of readings in the record.

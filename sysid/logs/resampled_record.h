@@ -12,9 +12,9 @@
 
 namespace softgrip::sysid {
 
-/// Number of readings that is sufficient for a diagnosis: one hour at 10 Hz, or seven minutes at 100 Hz. With
-/// more readings, a diagnosis or the choice of a model structure takes more time but does not become more
-/// accurate.
+/// Number of readings that is sufficient for a diagnosis: about one hour at 10 Hz, or seven minutes at 100
+/// Hz. With more readings, a diagnosis or the choice of a model structure takes more time but does not become
+/// more accurate.
 inline constexpr std::size_t enough_readings = 40'000;
 
 /// Returns the samples with the indices `kept`, with the durations between these samples. The sampling of the
@@ -22,10 +22,10 @@ inline constexpr std::size_t enough_readings = 40'000;
 /// @param kept  ascending indices; the first is 0.
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
 /// Returns every `stride`-th sample, beginning with the first, for a coarse fit from many starting points. A
-/// held command is replaced by its mean over the removed samples. If the command jumps between two kept
-/// samples, each of the two gets the local mean of the command. Without this mean, the jump would be early or
-/// late by up to one interval of the kept samples. A command whose slope changes without a jump keeps its
-/// values.
+/// held command is replaced by its mean from the kept sample to the next kept sample. If the command jumps
+/// between two kept samples, each of the two gets the local mean of the command. Without this mean, the jump
+/// would be early or late by up to one interval of the kept samples. A command whose slope changes without a
+/// jump keeps its values.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
 /// Keeps every n-th sample of a record. n is the largest number for which the mean interval between kept
 /// samples is at most `interval_s`; it is at least 1.
@@ -40,8 +40,8 @@ inline constexpr std::size_t enough_readings = 40'000;
                                                     double longest_s);
 /// Returns the first sample of the record and one sample from each following interval of length `interval_s`:
 /// the sample that is nearest to the middle of the interval. If the signal is nearly linear in the interval,
-/// the value at this sample approximates the mean over the interval. If the interval between samples exceeds
-/// `interval_s`, the record is returned unchanged.
+/// the value at this sample approximates the mean over the interval. If the mean interval between samples is
+/// at least `interval_s`, the record is returned unchanged.
 [[nodiscard]] Record thinned_to_centres(const Record& record, double interval_s);
 /// Divides each step into `parts` equal parts. The drive, the temperature and the supply are interpolated
 /// linearly; a held drive is constant within a step. Only the original samples have readings.

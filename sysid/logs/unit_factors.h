@@ -20,9 +20,9 @@ namespace softgrip::sysid {
 /// @param unit  unit of the readings.
 [[nodiscard]] std::string mistaken_unit(double factor, model::OutputUnit unit);
 
-/// Limits for the largest value of a column. If the largest value is below its limit, the unit is probably
-/// not kPa, mm or deg. A soft finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg. A
-/// bending angle in rad never exceeds 3.
+/// Limits for the largest pressure and for the range of the readings. A value below its limit probably has a
+/// unit other than kPa, mm or deg. A soft finger moves by about 10 mm at 20 to 60 kPa and bends by more than
+/// 3 deg. A bending angle in rad never exceeds 3.
 inline constexpr double small_pressure_kpa = 2;
 [[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
   return unit == model::OutputUnit::deg ? 3 : 0.1;
