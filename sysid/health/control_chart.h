@@ -90,7 +90,8 @@ class ControlChart {
   /// nullopt if no recipe of the point has a reference with at least two values.
   std::optional<double> add(const ChartValues& values);
 
-  /// Takes over an alarm that another chart has raised. Does nothing if this chart has an earlier alarm.
+  /// Takes over an alarm that another chart has raised. Does nothing if this chart already has an alarm whose
+  /// change begins at this point or earlier.
   /// @param since  index of the first changed point; 0 and an index that does not exist are ignored.
   void take_alarm(std::size_t since);
 

@@ -45,7 +45,8 @@ struct Note {
                                                                       document::Problems& problems);
 
 struct HealthOptions {
-  /// Mean number of points of a healthy finger between two false alarms of any of its charts; at least 20.
+  /// Mean number of points of a healthy finger between two false alarms, counted over all its indicators; at
+  /// least 20.
   double false_alarm_points = 3650;
   bool by_day = true;  ///< true: all runs of a day are one point; false: every run is a point
 

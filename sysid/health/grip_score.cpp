@@ -36,11 +36,11 @@ constexpr double least_return_s = 0.03;
 constexpr double least_hold_s = 1.0;
 /// The contact indicator is computed from the readings up to this time after contact [s].
 constexpr double touch_window_s = 0.1;
-/// Duration after the last change of the command in which no sample is evaluated, because the valve is still
-/// settling [s].
+/// The creep, the pressure loss and the leak are not computed from the samples in this time after a change of
+/// the command, because the valve is still settling [s].
 constexpr double settling_s = 0.3;
-/// The loop width is computed from the samples whose predicted displacement is between these shares of the
-/// free stroke.
+/// The loop width is computed from the samples whose predicted displacement is between these shares of
+/// FreeFit::way_mm.
 constexpr double loop_lower = 0.15, loop_upper = 1 - loop_lower;
 
 /// Samples of a run, and the prediction of the baseline model for each sample.

@@ -1,10 +1,11 @@
 #pragma once
 // Computes the indicators of one recorded grip of a finger, relative to its baseline from commissioning.
 //
-// Gain and lag are computed from free motion before the first contact, by least squares of the readings on
-// the prediction of the baseline model and its rate. The loop width is computed from the part of the return
-// that is free motion. The creep is computed from the longest segment of free motion with a constant command.
-// An indicator is absent if the recording lacks the samples for this indicator.
+// Gain and lag are computed from rest and from free motion towards larger displacements, by least squares of
+// the readings on the prediction of the baseline model and its rate. The loop width is computed from the part
+// of the return that is free motion. The creep is computed from the longest segment of free motion with a
+// constant command. An indicator is absent if the recording lacks the samples for this indicator.
+//
 // Divides a recorded grip into rest, free motion and holding. The indicators of the finger are computed from
 // the free motion. The indicators of its pressure line are computed from the time in which the finger holds
 // an object. All other samples are not scored.
@@ -49,15 +50,15 @@ struct GripScore {
 /// motion.
 [[nodiscard]] GripScore score_of(const Recording& recording, std::size_t channel, const ScoreBase& base);
 
-/// Returns the smallest difference of an indicator that counts as a change, however small the standard
-/// deviation of the runs is.
+/// Returns the lower limit of the standard deviation of an indicator. With this limit, a negligible
+/// difference does not count as a change, however little the runs differ.
 [[nodiscard]] double least_difference(sysid::HealthNumber number, const ScoreBase& base);
 
 enum class Part : std::uint8_t {
   /// samples that are neither rest, free motion nor HOLDING, for example in contact before HOLDING, or after
   /// a fault
   neither,
-  rest,  ///< samples of a vented finger before its first motion
+  rest,  ///< samples before the first motion of the finger
   free,
   held,  ///< HOLDING with the command that was active at the start of HOLDING
 };

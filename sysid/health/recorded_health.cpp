@@ -94,7 +94,8 @@ class Baselines {
   std::vector<RefusedBaseline> refused_;
 };
 
-/// Returns for each finger without a baseline one element, with its last recording.
+/// Returns one element for each finger without a baseline, with the last recording of the finger in
+/// alphabetical order.
 std::vector<SkippedRun> without_baseline(const std::vector<ScoredRun>& runs, Baselines& baselines) {
   std::map<std::string, std::set<std::string>> recordings;
   for (const ScoredRun& run : runs) {

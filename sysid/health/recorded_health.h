@@ -21,7 +21,8 @@ struct HealthQuestion {
   std::string baseline;
   std::vector<Note> notes;
   HealthOptions options;
-  std::string scores;  ///< scores from an earlier call, as text; the recordings in this text are not read
+  std::string scores;  ///< scores from an earlier call, as text; recordings with scores for the current
+                       ///< baselines are not read again
   /// Called with a text that states the progress; may be empty.
   std::function<void(const std::string&)> progress = {};
 };
@@ -58,9 +59,9 @@ struct HealthRefusal {
   document::Problems notes;  ///< notes about a finger that is unknown
 };
 
-/// Scores the recordings whose scores are not in `question.scores`, and judges all fingers. The known fingers
-/// are those of the recordings, of the scores and of the baselines. `skipped` contains one element for each
-/// finger that has recordings but no baseline.
+/// Scores the recordings whose scores are not in `question.scores`, and judges all fingers. A note is refused
+/// if its finger occurs in no recording, no score and no baseline. `skipped` contains the unusable
+/// recordings, and one element for each finger that has recordings but no baseline.
 [[nodiscard]] tl::expected<RecordedHealth, HealthRefusal> recorded_health(const HealthQuestion& question);
 
 /// Returns warnings about shared changes and about changes that are not attributed to a finger.

@@ -9,8 +9,8 @@
 //
 // - The difference has changed. The change is attributed to a finger if its own values have changed more than
 //   the values of its peers, with a likelihood ratio of at least 20 to 1. Otherwise the change is reported as
-//   unclear, without an alarm. With two fingers, both differences contain the same values, so a false alarm
-//   of the difference is a false alarm of one of the fingers.
+//   unclear, without an alarm. With two fingers, the two differences have equal magnitudes and opposite
+//   signs, so both charts of the difference alarm together.
 // - The finger's own values have changed, and the values of its peers have changed in the same direction by
 //   at least half as much. This is a shared change. It is reported without an alarm, and the changed values
 //   become the new reference.
@@ -31,7 +31,8 @@ namespace softgrip::sysid::health {
 struct FingerRuns {
   std::string finger;
   std::vector<ScoredRun> runs;
-  ScoreBase base;  ///< baseline of the finger; determines which differences are negligible
+  ScoreBase base;  ///< baseline of the finger; determines the output unit and which differences are
+                   ///< negligible
 };
 
 /// A change that several fingers share.
@@ -67,11 +68,11 @@ struct RigHealth {
 /// Returns a change as text: "gain (at full pressure) -0.62 mm".
 [[nodiscard]] std::string change_text(sysid::HealthNumber number, double change, model::OutputUnit unit);
 
-/// Returns the sentence about an unattributed change (FingerHealth::unclear): "Since 2026-03-20 left differs
-/// from right in another way than before: ..."
+/// Returns the sentence about an unattributed change (FingerHealth::unclear): "Since 2026-03-20, the
+/// difference between left and right has changed: ..."
 [[nodiscard]] std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear);
 
-/// Returns the sentence about a shared change, and the checks that find its cause: "Since 2026-03-20 all
+/// Returns the sentence about a shared change, and the checks that find its cause: "Since 2026-03-20, all
 /// fingers of the rig show the same change: ..."
 [[nodiscard]] std::string shared_sentence(const SharedChange& shared);
 

@@ -16,8 +16,9 @@ using sysid::HealthNumber;
 using sysid::HealthSign;
 using sysid::Moves;
 
-/// Penalties in the score of a cause: one for each of its signs that is missing, and one for each alarm that
-/// the cause does not explain. Each sign that is present adds 1 to the score.
+/// Penalties in the score of a cause: one for each of its signs that is missing although the indicator has a
+/// reference, and one for each change that the cause does not explain. Each sign that is present adds 1 to
+/// the score.
 constexpr double missing_sign = 0.25;
 constexpr double unexplained_alarm = 1 - missing_sign;
 /// Penalty of a cause that can be diagnosed only from recordings with an additional column. Recordings of
