@@ -47,13 +47,12 @@ struct RowAccount {
   /// Returns true if the numbers of used rows, rows merged with another row, and left-out rows add up to the
   /// number of all rows.
   [[nodiscard]] bool balanced() const;
-  /// Returns the number of rows that were left out for a reason that the user did not request.
+  /// Returns the number of lost rows: all left-out rows except empty rows and rows that the user excluded.
   [[nodiscard]] std::size_t lost() const;
-  /// Returns the share of the rows that are lost. Empty rows and rows that the user excluded do not count as
-  /// rows.
+  /// Returns the share of lost rows. Empty rows and rows that the user excluded are not part of the total.
   [[nodiscard]] double lost_share() const;
-  /// Returns the counts as a sentence, for example "1500 rows: 600 used, 900 left out (900 at the time of the
-  /// row before)".
+  /// Returns the counts as a sentence, for example "1500 rows: 600 used, 900 left out (900 with the time of
+  /// the previous row)".
   [[nodiscard]] std::string sentence() const;
 };
 

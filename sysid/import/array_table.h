@@ -24,7 +24,7 @@ class ArrayCollector {
   /// Adds an array with the values `values` in column-major order. A row or column vector becomes one column.
   /// Each column of a matrix becomes a column of the table, named "NAME(:,2)". If the matrix has more columns
   /// than rows, each row becomes a column of the table instead, named "NAME(2,:)". An array with fewer than
-  /// two values is ignored.
+  /// two values is ignored. A matrix with more than 200 rows and more than 200 columns is skipped.
   void add(const std::string& name, const std::string& unit, std::size_t rows, std::size_t columns,
            const std::vector<double>& values);
   void note(std::string what) { notes_.push_back(std::move(what)); }

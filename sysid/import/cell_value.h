@@ -33,8 +33,8 @@ struct CellValue {
 /// list are in lower case, and numbers are compared by value.
 [[nodiscard]] CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing);
 
-/// Returns the value of a text that consists of decimal digits only; nullopt if the text contains another
-/// character.
+/// Returns the value of a text that consists of decimal digits only; nullopt for any other text, and for a
+/// value that is too large.
 [[nodiscard]] std::optional<std::size_t> whole_number(std::string_view text);
 
 }  // namespace softgrip::sysid

@@ -35,8 +35,9 @@ std::optional<Overflow> continue_overflows(std::vector<double>& clock, double un
 [[nodiscard]] std::optional<std::vector<double>> seconds_of(const ForeignTable& table, const Mapping& mapping,
                                                             std::size_t column);
 
-/// Returns true if two columns contain the times of the same clock: their values are equal, or their
-/// difference is constant.
+/// Returns true if two columns contain the times of the same clock: their values are equal, or the clocks
+/// have different origins. Different origins are assumed if the difference is constant and larger than the
+/// duration of the recording.
 [[nodiscard]] bool same_clock(const ForeignTable& table, const Mapping& mapping, std::size_t a,
                               std::size_t b);
 

@@ -181,7 +181,7 @@ class Converter {
     }
     remarks_.notes.push_back(
         "each row has " + std::to_string(clocks.size()) +
-        " times, so the values are merged by time, and each different time counts as one row");
+        " times, so the values are merged by time, and each different time becomes one sample");
     return samples;
   }
 

@@ -74,7 +74,7 @@ struct ColumnMapping {
 
 struct Mapping {
   std::array<ColumnMapping, role_count> columns;
-  std::optional<double> rate_hz;  ///< sampling rate; used if the file contains no times
+  std::optional<double> rate_hz;  ///< sampling rate; used if no column has the role time
   char separator = 0;             ///< character between the columns; 0: detected automatically
   std::vector<std::string> missing;
   std::string channel;
@@ -87,7 +87,8 @@ struct Mapping {
   [[nodiscard]] const ColumnMapping& operator[](Role role) const {
     return columns[static_cast<std::size_t>(role)];
   }
-  /// Returns true if the mapping assigns time, displacement, and at least one of command and pressure.
+  /// Returns true if the mapping assigns time (or states a sampling rate), displacement, and at least one of
+  /// command and pressure.
   [[nodiscard]] bool complete() const;
   bool operator==(const Mapping&) const = default;
 };
@@ -96,7 +97,8 @@ struct Mapping {
 /// --unit pressure=psi".
 [[nodiscard]] std::string options_of(const Mapping& mapping);
 
-/// Returns the separator for a word: "comma", "tab" or the character itself. Returns 0 for any other word.
+/// Returns the separator for a word: "comma", "semicolon", "tab", "space", "bar" or the character itself.
+/// Returns 0 for any other word.
 [[nodiscard]] char separator_named(std::string_view word);
 /// Returns the name of a separator; the inverse of separator_named().
 [[nodiscard]] std::string_view word_of_separator(char separator);

@@ -93,7 +93,8 @@ Shape shape_of(const matvar_t& variable) {
   return flat ? Shape{variable.dims[0], variable.dims[1]} : Shape{};
 }
 
-/// Returns the text that a variable contains, in ASCII characters; empty if the variable is not a text.
+/// Returns the text that a variable contains, in ASCII characters; empty if the variable is not a text of one
+/// row with at most `longest_text` characters.
 std::string text_of(mat_t* file, matvar_t* variable) {
   if (variable == nullptr || variable->class_type != MAT_C_CHAR) return {};
   const Shape shape = shape_of(*variable);

@@ -70,8 +70,8 @@ class Scanner {
   char last_ = 0;
 };
 
-/// Converts the hours of a 12-hour clock to 24 hours if "PM", "a.m." or a similar word follows. Otherwise
-/// returns the hours unchanged.
+/// Converts the hours of a 12-hour clock to 24 hours if "PM", "a.m." or a similar word follows; returns
+/// nullopt if these hours are not from 1 to 12. Without such a word, returns the hours unchanged.
 std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) {
   Scanner ahead = scan;
   ahead.marks(" ");
@@ -221,7 +221,7 @@ bool is_one_of(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Returns true if all values of the column are whole numbers from 0 to below `end`.
+/// Returns true if the column contains a number, and all its numbers are whole numbers from 0 to below `end`.
 bool whole_below(const TableColumn& column, double end) {
   bool any = false;
   for (const double value : column.values) {

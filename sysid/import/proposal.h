@@ -33,7 +33,7 @@ struct Proposal {
 [[nodiscard]] int fitness_for(const TableColumn& column, Role role);
 /// Returns true if a part of the name is a word that identifies the role.
 [[nodiscard]] bool names_role(std::string_view name, Role role);
-/// Returns the unit of a column of times since 1970. The magnitude of the values determines this unit.
+/// Returns the unit of a column of times since 1970. The magnitude of the first value determines this unit.
 /// Returns "" for a column of other values.
 [[nodiscard]] std::string epoch_unit(const TableColumn& column);
 
@@ -49,7 +49,8 @@ struct Proposal {
 [[nodiscard]] std::string unit_text(const ForeignTable& table, const ColumnMapping& column,
                                     Quantity quantity);
 
-/// Returns the mapping as a table with one line per column: number, name, unit, some values, and the role.
+/// Returns the mapping as a table with one line per column: number, name, some values, and the role with its
+/// unit.
 [[nodiscard]] std::string mapping_table(const ForeignTable& table, const Mapping& mapping);
 
 }  // namespace softgrip::sysid

@@ -33,8 +33,8 @@ struct RoleSources {
   [[nodiscard]] bool uses(std::size_t column) const;
 };
 
-/// Returns the columns and the conversion of each role, as the mapping defines them. A role without a column,
-/// an unknown column, a column with bad cells and a missing unit are problems.
+/// Returns the columns and the conversion of each role, as the mapping defines them. A required role without
+/// a column, an unknown column, a column with bad cells and a missing unit are problems.
 [[nodiscard]] RoleSources resolve_sources(const ForeignTable& table, const Mapping& mapping,
                                           document::Problems& problems);
 

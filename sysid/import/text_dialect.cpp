@@ -81,8 +81,8 @@ std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
   return texts;
 }
 
-/// Returns true if all texts are units, with or without brackets. "-" or an empty text means that the column
-/// has no unit. At least one text must be a unit.
+/// Returns true if all texts are units, with or without brackets. A text in brackets always counts as a unit.
+/// "-" or an empty text means that the column has no unit. At least one text must be a unit.
 bool are_units(const std::vector<std::string>& texts) {
   bool any = false;
   for (const std::string& text : texts) {

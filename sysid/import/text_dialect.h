@@ -51,9 +51,9 @@ struct Dialect {
 [[nodiscard]] std::optional<Dialect> dialect_of(const std::string& file, const TextLines& lines,
                                                 const TableOptions& options, document::Problems& problems);
 
-/// Converts a text to UTF-8 without a byte order mark. Each line of the result ends with "\n". Accepted
-/// encodings are UTF-8, UTF-16 with a byte order mark, and Latin-1. If the bytes are not a text, returns a
-/// sentence that describes the error.
+/// Converts a text to UTF-8 without a byte order mark. The line breaks of the result are "\n" or "\r\n".
+/// Accepted encodings are UTF-8, UTF-16 with a byte order mark, and Latin-1. If the bytes are not a text,
+/// returns a sentence that describes the error.
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {

@@ -62,13 +62,13 @@ class RowReader {
   }
 
   /// Refuses a file that contains both decimal points and decimal commas. In such a file, one of the two
-  /// marks must separate thousands.
+  /// marks may separate thousands.
   void check_decimals() {
     if (comma_.number == 0 || point_.number == 0) return;
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
     report_.add("decimal", {later.number, 1}, later.text,
                 "the file contains numbers with a decimal comma and numbers with a decimal point",
-                "the second decimal mark is first used in line " +
+                "the other decimal mark is first used in line " +
                     std::to_string(std::min(comma_.number, point_.number)));
   }
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }

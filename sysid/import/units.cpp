@@ -76,8 +76,8 @@ constexpr std::array spellings{
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
-/// Names of units that are also words or indices. After a blank or an underscore, such a name may not be a
-/// unit.
+/// Names of units that are also words or indices. If the quantity of the column is unknown, such a name
+/// counts as a unit only in brackets, or after '/' or ','.
 constexpr std::array<std::string_view, 10> doubtful{"in", "min", "a", "c",   "d",
                                                     "f",  "h",   "k", "raw", "count"};
 

@@ -44,7 +44,7 @@ struct SheetProblem {
 /// Returns the cells as lines of CSV. The table begins at the first row that has cells in at least 75 % of
 /// the columns. The lines of the rows above the table have only as many cells as the sheet contains there.
 /// From the table on, each row that is not empty has a cell for every column. Booleans are written as 1 and
-/// 0, and dates in ISO 8601. A column whose values are all within one day is written as times of day; rows
+/// 0, and dates in ISO 8601. If all dates of a column are below 1 day, they are written as times of day; rows
 /// above the table have no influence on this choice. A formula gives its stored value. Errors and formulas
 /// without a stored value give empty cells, and a note names these cells.
 [[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
