@@ -58,8 +58,8 @@ struct ChartLimits {
 
 /// Value of an indicator, and the temperature at which it was measured.
 struct ChartValue {
-  /// Stores a value. @param at_c  temperature [degC]; if this argument is missing, the temperature is
-  /// unknown.
+  /// Stores a value.
+  /// @param at_c  temperature [degC]; if this argument is missing, the temperature is unknown.
   ChartValue(double number, double at_c = RunningReference::no_temperature)
       : value(number), temperature_c(at_c) {}
 
@@ -107,8 +107,9 @@ class ControlChart {
 
  private:
   [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
-  /// Updates the CUSUM and the test for single large values. @param count, persistence  number of reference
-  /// values and their lag-one correlation, averaged over the recipes of the point.
+  /// Updates the CUSUM and the test for single large values.
+  /// @param count, persistence  number of reference values and their lag-one correlation, averaged over the
+  /// recipes of the point.
   void judge(double z, double count, double persistence);
   void learn(const ChartValues& values);
   void measure_change();

@@ -94,7 +94,8 @@ struct HealthReference {
   /// Absent: the indicator does not depend significantly on the temperature.
   std::optional<TemperatureSlope> slope;
 
-  /// Returns the expected value of the indicator. @param temperature_c  [degC]; absent: not recorded
+  /// Returns the expected value of the indicator.
+  /// @param temperature_c  [degC]; absent: not recorded
   [[nodiscard]] double at(std::optional<double> temperature_c) const {
     return slope && temperature_c ? slope->at(*temperature_c) : mean;
   }

@@ -36,8 +36,8 @@ struct FingerTrack {
 };
 
 /// Groups the runs of a finger into points, and assigns each maintenance record to the first point after it.
-/// @param runs  runs of one finger, sorted by time. They must outlive the track. @param notes  records of all
-/// fingers.
+/// @param runs  runs of one finger, sorted by time. They must outlive the track.
+/// @param notes  records of all fingers.
 [[nodiscard]] FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& runs,
                                    const std::vector<Note>& notes, const ScoreBase& base, bool by_day);
 

@@ -30,8 +30,9 @@ struct ScoreBase {
   double full_kpa = 0;  ///< largest command of the healthy logs
   double full_mm = 0;   ///< displacement of the model at `full_kpa`
 };
-/// Returns the baseline for the scores. @param model  baseline model. @param full_kpa  full pressure, > 0
-/// [kPa].
+/// Returns the baseline for the scores.
+/// @param model  baseline model.
+/// @param full_kpa  full pressure, > 0 [kPa].
 [[nodiscard]] ScoreBase score_base(const model::Model& model, double full_kpa);
 
 /// Indicators of a run, indexed by HealthNumber. NaN: the indicator cannot be computed from the recording.

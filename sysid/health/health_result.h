@@ -20,7 +20,8 @@ inline constexpr const char* health_file = "health.json";
 [[nodiscard]] result::Fields fields_of(const FingerHealth& health, const Suspicion& suspicion);
 /// Returns the fields of a change that several fingers share.
 [[nodiscard]] result::Fields fields_of(const SharedChange& shared);
-/// Returns the content of health.json. @param now  creation time that is written to the file.
+/// Returns the content of health.json.
+/// @param now  creation time that is written to the file.
 [[nodiscard]] result::Fields fields_of(const RecordedHealth& health, Nanoseconds now);
 
 }  // namespace softgrip::sysid::health

@@ -16,8 +16,9 @@ namespace softgrip::sysid::health {
 
 class NumberWatch {
  public:
-  /// @param number  index of the indicator. @param tracks  tracks that place_in_time() has processed. They
-  /// must outlive this object, which adds alarms, references and standard normal values to them.
+  /// @param number  index of the indicator.
+  /// @param tracks  tracks that place_in_time() has processed. They must outlive this object, which adds
+  /// alarms, references and standard normal values to them.
   NumberWatch(std::size_t number, std::vector<FingerTrack>& tracks, const HealthOptions& options);
 
   /// Processes all points of all fingers in order of time and returns the shared changes. Must be called only

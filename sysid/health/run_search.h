@@ -28,8 +28,9 @@ struct SkippedRun {
   std::string finger = {};  ///< finger whose readings were not used; empty: the whole recording
 };
 
-/// Callback before each recording is read. @param index  index of this recording, from 1. @param count number
-/// of recordings to read.
+/// Callback before each recording is read.
+/// @param index  index of this recording, from 1.
+/// @param count  number of recordings to read.
 using OnRecording = std::function<void(std::size_t index, std::size_t count)>;
 
 struct RunScores {

@@ -19,7 +19,8 @@
 namespace softgrip::sysid::health {
 
 /// Converts a Student's t value to a standard normal value with the same probability, by Wallace's formula
-/// (Annals of Mathematical Statistics 30, 1959). @param degrees_of_freedom  of the t value, at least 1.
+/// (Annals of Mathematical Statistics 30, 1959).
+/// @param degrees_of_freedom  of the t value, at least 1.
 [[nodiscard]] double normal_of_t(double t, double degrees_of_freedom);
 
 /// Sums over a series of pairs (x, y), and sums of the products of each pair with the pair before it. The
@@ -65,7 +66,8 @@ class RunningReference {
 
   void learn(double value, double temperature_c = no_temperature);
   /// Returns the deviation of the next value from the reference as a standard normal value; nullopt for the
-  /// first two values. @param least_spread  lower limit of the standard deviation that is used, > 0.
+  /// first two values.
+  /// @param least_spread  lower limit of the standard deviation that is used, > 0.
   [[nodiscard]] std::optional<double> judge(double value, double least_spread,
                                             double temperature_c = no_temperature) const;
   /// Returns the expected next value. The expected value is the mean if the temperature is unknown or has no

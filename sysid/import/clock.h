@@ -22,7 +22,8 @@ struct Overflow {
 /// Corrects the overflows of a clock: adds the period of each overflow to all later values. Possible periods
 /// are the range of a counter with 16, 24 or 32 bits, and one day. One count of the counter is the unit of
 /// the clock, 1/1000 of this unit or 1/1,000,000 of this unit. If no period explains all backward steps of
-/// the clock, the clock is not changed. @param unit_s  unit of the clock [s].
+/// the clock, the clock is not changed.
+/// @param unit_s  unit of the clock [s].
 std::optional<Overflow> continue_overflows(std::vector<double>& clock, double unit_s);
 
 /// Returns the indices of the columns that probably contain times. Such a column contains dates, times of

@@ -50,7 +50,8 @@ struct ImportRemarks {
 
 /// Completes the command. A missing command is replaced by the previous command. Samples before the first
 /// command are left out. If the file has no command, the measured pressure is used as the command. Samples
-/// without a displacement are kept. @param samples  must not be empty.
+/// without a displacement are kept.
+/// @param samples  must not be empty.
 void complete_drive(ForeignSamples& samples, ImportRemarks& remarks);
 
 /// Keeps the longest segment between two gaps and reports the other segments. A gap is an interval between

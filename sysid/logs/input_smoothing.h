@@ -18,8 +18,8 @@ namespace softgrip::sysid {
 /// follow Student's t distribution. The signal can therefore jump occasionally, and it is smooth between the
 /// jumps. Expectation maximisation estimates the scale of the increment in each step. The sampling may be
 /// irregular. A value that is not finite is a missing measurement.
-/// @param time_s  increasing times, one for each element of `values`. @param noise  standard deviation of the
-/// noise; if it is 0, the function returns `values`.
+/// @param time_s  increasing times, one for each element of `values`.
+/// @param noise  standard deviation of the noise; if it is 0, the function returns `values`.
 [[nodiscard]] std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values,
                                            double noise);
 

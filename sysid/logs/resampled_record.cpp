@@ -89,8 +89,8 @@ std::vector<std::size_t> nearest_to_centres(const Record& record, double interva
   return kept;
 }
 
-/// Divides each step of a series into `parts` steps. @param between  function that interpolates the
-/// additional values.
+/// Divides each step of a series into `parts` steps.
+/// @param between  function that interpolates the additional values.
 template <class Between>
 std::vector<double> finer(const std::vector<double>& series, std::size_t parts, Between&& between) {
   std::vector<double> out;
