@@ -13,8 +13,8 @@ struct GpioSettings {
   double debounce_s = 0;
   double stale_after_s = 0;
   double look_interval_s = 0.005;
-  /// True: the enable output stays on while a fault is latched. An emergency stop switches it off in any
-  /// case.
+  /// True: the enable output stays on while a fault is latched. An emergency stop, lost input lines and a
+  /// stalled control loop switch it off in any case.
   bool keeps_enable_on_fault = false;
   std::vector<drivers::GpioLineSettings> lines;  ///< settings of the digital lines; at most one line for each
                                                  ///< purpose

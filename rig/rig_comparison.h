@@ -22,9 +22,9 @@ void compare_limits(const document::Document& document, const RigFile& rig, docu
 /// Returns true if a burst pressure line or a lost supply of this channel would cause a fault.
 [[nodiscard]] bool sees_burst_line(const RigFile& rig, std::size_t channel);
 
-/// Adds a warning at the first grip step that verifies its result by displacement, if a burst pressure line
-/// is not detected on the channel of the step. With a burst line, this step would report HOLDING. Adds at
-/// most one warning per sequence.
+/// Adds a warning at the first grip step that verifies its result by displacement or detection, if a burst
+/// pressure line is not detected on the channel of the step. With a burst line, this step would report
+/// HOLDING. Adds at most one warning per sequence.
 void compare_grips(const control::Sequence& sequence, const RigFile& rig, document::Problems& problems);
 
 }  // namespace softgrip::rig

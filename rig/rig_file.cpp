@@ -16,8 +16,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the path of the file whose name is most similar to `named`. It is searched for in the folder that
-/// should contain `named`.
+/// Searches the folder of `path` for the file name that is most similar to the file name of `path`. Returns
+/// `named` with this file name; "" if no name is similar.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;

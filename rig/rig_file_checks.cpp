@@ -106,9 +106,9 @@ void check_watchdog_time(Context& context, MapReader& top) {
   }
 }
 
-/// Checks that the bus is fast enough for the rate. The round-trip time of a network is an estimate, so a
-/// user who knows this time better may accept the rate. The transmission time on a serial line is exact. If a
-/// period is shorter than this time, the rate can never be reached, so the user cannot accept it.
+/// Checks that the bus is fast enough for the rate. With `accept_over_budget`, the user accepts a rate above
+/// the budget, for example because the round-trip time of a network is only an estimate. The transmission
+/// time on a serial line is exact, so the deadline of an exchange must always cover it.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   if (settings == nullptr) return;

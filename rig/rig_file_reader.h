@@ -44,8 +44,9 @@ struct Context {
 
   bool rate_known = false;  ///< true: rate_hz has no error, so other values can be compared with the period
 
-  /// Has one member for each part of the file. A member is true if its part is present and has no error. A
-  /// check that needs several parts runs if all of these parts have no error.
+  /// Has one member for each part of the file. A member is true if its part is present and has no error;
+  /// `loop` is also true if this optional part is absent. A check that needs several parts runs if all of
+  /// these parts have no error.
   struct Sound {
     bool loop = false;
     bool faults = false;
@@ -88,7 +89,8 @@ struct Context {
 [[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
 /// Returns a location as text, for example "12:5" for line 12, column 5.
 [[nodiscard]] std::string place(document::Location at);
-/// Reports "`key` is already ... at 12:5", where 12:5 is the location of the first use.
+/// Reports at `key` that `what` is already used: "WHAT is already used at 12:5", where 12:5 is the location
+/// `first`.
 void report_repeated(MapReader& reader, std::string_view key, const std::string& what,
                      document::Location first);
 

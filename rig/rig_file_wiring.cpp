@@ -158,7 +158,7 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
 }
 
 /// Checks that the pressure limits are within the ranges of the valve and of the board's output, and that
-/// they use at least a fifth of the valve's range.
+/// they use at least 20 % of the valve's range.
 void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
                  const drivers::OutputWiring& wiring, const control::LimitSettings& limits,
                  const ValveFacts& facts) {
@@ -180,8 +180,9 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
-  // The comparison needs a tolerance of one raw number: on many boards, the nominal full scale corresponds to
-  // the largest raw number plus 1.
+  // The comparison needs a tolerance of at least one raw number: on many boards, the nominal full scale
+  // corresponds to the largest raw number plus 1. The tolerance of 0.1 % of the range covers one raw number
+  // of a converter with 10 or more bits.
   const double slack = (terminal->highest - terminal->lowest) * 1e-3;
   for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
     const double needed = wiring.scaling.x_at(pressure);

@@ -110,8 +110,10 @@ void declare_converters(RigKeys& keys) {
       "watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s, {0, 60},
       "time without an exchange after which the simulated outputs go to the rest pressure; 0: no watchdog")};
   using simulation::SimulatedChannel;
-  keys.converters = {required("output_bits", &SimulatedChannel::output_bits, {0, 24}, "0: no quantisation"),
-                     required("input_bits", &SimulatedChannel::input_bits, {0, 24}, "0: no quantisation"),
+  keys.converters = {required("output_bits", &SimulatedChannel::output_bits, {0, 24},
+                              "resolution of the simulated outputs in bits; 0: no quantisation"),
+                     required("input_bits", &SimulatedChannel::input_bits, {0, 24},
+                              "resolution of the simulated inputs in bits; 0: no quantisation"),
                      {"plants", "map", "",
                       "map of the simulated fingers: each key is the name of a channel, and its value "
                       "describes the finger of this channel"},

@@ -29,7 +29,7 @@ struct Recipe {
   std::string displacement;
 };
 
-/// Action of the gateway if the PLC stops responding.
+/// Action of the gateway if the heartbeat of the PLC stops.
 enum class Reaction : std::uint8_t { nothing, stop, vent, release };
 inline constexpr auto reaction_names = enum_names<Reaction>({{Reaction::nothing, "nothing"},
                                                              {Reaction::stop, "stop"},
