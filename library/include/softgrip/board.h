@@ -126,7 +126,7 @@ class SOFTGRIP_API SimulatedBoard final : public Board {
   /// Advances the clock of the board by `duration`. A negative duration has no effect.
   void advance(std::chrono::nanoseconds duration) noexcept;
   /// Places an object at the finger of a channel, or removes the object if `object` is empty. A call for an
-  /// unknown channel has no effect.
+  /// unknown channel or with an invalid object has no effect.
   void set_object(std::size_t channel, const std::optional<SimulatedObject>& object) noexcept;
   /// Returns the true displacement of the finger, without the errors of its sensor; NaN for an unknown
   /// channel.

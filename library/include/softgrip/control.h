@@ -169,7 +169,7 @@ class SOFTGRIP_API Feedforward {
   /// command.
   /// @param model            model of the finger
   /// @param limits           limits of the command
-  /// @param tick_s           period of step() [s], > 0
+  /// @param tick_s           period of step() [s], 0.0001 to 1
   /// @param kind             kind of feedforward
   /// @param extra_latency_s  latency from a command to the output of the board [s], 0 to 1. The latency is
   ///                         added to the dead time of the model.

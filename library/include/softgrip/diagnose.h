@@ -71,8 +71,9 @@ struct Diagnosis {
 /// Diagnoses a model. Computes the error of the model on the logs and finds the causes of this error. Extends
 /// the model by these causes and computes the error reduction. The command `softgrip diagnose` computes its
 /// result in the same way. Throws InvalidArgument if an argument is invalid, Refused if the logs cannot be
-/// diagnosed, and Cancelled after a request through `options.stop`. @param model    the model to diagnose
-/// @param logs     logs of one series of experiments, in the order of time and in the unit of the model
+/// diagnosed, and Cancelled after a request through `options.stop`.
+/// @param model  the model to diagnose
+/// @param logs  logs of one series of experiments, in the order of time and in the unit of the model
 /// @param options  settings of the search
 [[nodiscard]] SOFTGRIP_API Diagnosis diagnose(const Model& model, const std::vector<Log>& logs,
                                               const DiagnoseOptions& options = {});
@@ -93,9 +94,11 @@ struct Change {
 /// Compares later logs of a finger with logs that were recorded when the finger was healthy. The command
 /// `softgrip diagnose --healthy` computes its result in the same way. Throws InvalidArgument if an argument
 /// is invalid, Refused if the logs cannot be compared, and Cancelled after a request through `options.stop`.
-/// @param model    model of the healthy finger @param healthy  logs of the healthy finger @param later
-/// logs of the same finger from a later time @param options  settings of the search; the function uses all of
-/// them except `null_campaigns`, `use.drive` and `use.begin`
+/// @param model  model of the healthy finger
+/// @param healthy  logs of the healthy finger
+/// @param later  logs of the same finger from a later time
+/// @param options  settings of the search; the function uses all of them except `null_campaigns`, `use.drive`
+/// and `use.begin`
 [[nodiscard]] SOFTGRIP_API Change diagnose_change(const Model& model, const std::vector<Log>& healthy,
                                                   const std::vector<Log>& later,
                                                   const DiagnoseOptions& options = {});

@@ -38,8 +38,8 @@ class SOFTGRIP_API InvalidArgument : public Error {
   std::string argument_;
 };
 
-/// A file cannot be read or written, or its content is invalid. what() lists each problem with file, line and
-/// column.
+/// A file cannot be read or written, or its content is invalid. what() states the reason. For invalid
+/// content, what() lists each problem with file, line and column.
 class SOFTGRIP_API FileError : public Error {
  public:
   using Error::Error;

@@ -29,8 +29,8 @@ struct HealthOptions {
   std::string notes = {};  ///< path of the file with maintenance records (notes.yaml); empty: no such file is
                            ///< used
   /// Path of the file that stores the indicators of all recordings that were read so far
-  /// (health-scores.jsonl). Recordings whose indicators are in this file are not read again. health()
-  /// replaces the file at the end. Empty: no file is used.
+  /// (health-scores.jsonl). Recordings whose indicators for the current baseline are in this file are not
+  /// read again. health() replaces the file at the end. Empty: no file is used.
   std::string scores = {};
   Progress progress = {};     ///< function that is called with a text about the present stage of the
                               ///< computation; may be empty
@@ -46,8 +46,8 @@ struct HealthIndicator {
                                     ///< no point has a value
   std::optional<double> reference;  ///< mean of the indicator since the last maintenance record
   std::optional<double> spread;     ///< standard deviation of the indicator since the last maintenance record
-  std::vector<double> values;       ///< values of the indicator, for the points with the recipe of the
-                                    ///< reference; NaN: the point has no value
+  std::vector<double> values;       ///< value of the indicator at each point, for the recipe of the
+                                    ///< reference; NaN: the point has no such value
 };
 
 /// A significant change of an indicator.
@@ -57,7 +57,8 @@ struct HealthAlarm {
                                         ///< of the indicator
   std::string since;                    ///< label of the point at which the change began
   std::string noticed;                  ///< label of the point at which the change was detected
-  std::size_t grips_until_noticed = 0;  ///< number of recordings between the points `since` and `noticed`
+  std::size_t grips_until_noticed = 0;  ///< number of recordings from the point `since` to the point
+                                        ///< `noticed`
   bool active = false;                  ///< true: the alarm is active; false: a maintenance record has ended
                                         ///< the alarm
 };
@@ -80,14 +81,14 @@ struct FingerHealth {
                                     ///< name of a recording
   std::vector<HealthIndicator> indicators;  ///< all indicators of the finger
   std::vector<HealthAlarm> alarms;          ///< alarms in the order in which they were detected
-  std::vector<Suspect> suspects;            ///< possible causes of the active alarms; the first cause
-                                            ///< explains the most alarms
+  std::vector<Suspect> suspects;            ///< possible causes of the active alarms; the first cause agrees
+                                            ///< best with the alarms
   std::vector<std::string> advice;          ///< measures with which the user can distinguish the possible
                                             ///< causes
   std::string html;                         ///< report page of the finger
 };
 
-/// A recording that was not used.
+/// A recording that was not used, or in which one finger was not used.
 struct SkippedRecording {
   std::string recording;  ///< name of the folder of the recording
   std::string reason;     ///< reason why the recording was not used, in words
@@ -97,7 +98,8 @@ struct SkippedRecording {
 struct Health {
   bool alarm = false;                     ///< true: at least one finger has an active alarm
   std::vector<FingerHealth> fingers;      ///< health of each finger, in the order of the fingers' names
-  std::vector<std::string> warnings;      ///< warnings about changes that are not attributed to a finger
+  std::vector<std::string> warnings;      ///< warnings about changes that several fingers share, and about
+                                          ///< changes that are not attributed to a finger
   std::vector<SkippedRecording> skipped;  ///< recordings that were not used
   std::string json;                       ///< content of health.json that `softgrip health` writes
 };
@@ -106,11 +108,11 @@ struct Health {
 /// command `softgrip health` computes its result in the same way. Throws InvalidArgument if an argument is
 /// invalid. Throws FileError if the baseline does not exist, or if the content of the baseline, the notes or
 /// the scores is invalid. Throws Refused if no recording can be compared with the baseline. Throws Cancelled
-/// after a request through `options.stop`. @param recordings  folders of recordings, or folders that contain
-/// such folders @param baseline    folder of `softgrip baseline`. If it contains a folder with the name of a
-/// finger, the
-///                    baseline in that folder applies to this finger
-/// @param options     control charts, maintenance records and scores
+/// after a request through `options.stop`.
+/// @param recordings  folders of recordings, or folders that contain such folders
+/// @param baseline  folder of `softgrip baseline`. If it contains a folder with the name of a finger, the
+/// baseline in that folder applies to this finger
+/// @param options  control charts, maintenance records and scores
 [[nodiscard]] SOFTGRIP_API Health health(const std::vector<std::string>& recordings,
                                          const std::string& baseline, const HealthOptions& options = {});
 

@@ -42,7 +42,8 @@ struct ReadOptions {
                              ///< that `softgrip import` proposes
   /// Column for each role (`time`, `command`, `pressure`, `displacement`, `temperature`, `supply`). A column
   /// is given by its name or by its number, counted from 1. For a role that is not in the map, a column is
-  /// chosen by the names and units of the columns. If the map is not empty, the file is always imported.
+  /// chosen by the names and units of the columns. If `columns`, `rate_hz` or `sheet` is given, the file is
+  /// always imported.
   std::map<std::string, std::string> columns = {};
   std::map<std::string, std::string> units =
       {};  ///< unit for each role whose unit is not in the file, for example `pressure`: `psi`
@@ -52,7 +53,7 @@ struct ReadOptions {
 
 /// Reads a log of softgrip (CSV, or the folder of a recording). Converts a file of another program (text,
 /// XLSX, TDMS, MCAP, MATLAB, HDF5); the notes of the result describe the conversion. Throws FileError with
-/// all problems of the file. Throws InvalidArgument for options that do not exist.
+/// all problems of the file. Throws InvalidArgument for an unknown role and for an invalid sampling rate.
 [[nodiscard]] SOFTGRIP_API Log read_log(const std::string& path, const ReadOptions& options = {});
 
 /// Writes a log as a CSV file. If read_log() reads this file, it returns columns that are equal to those of
@@ -71,7 +72,7 @@ enum class Drive : std::uint8_t {
 
 /// The initial state of a log.
 enum class Begin : std::uint8_t {
-  automatic,  ///< the state is determined from the log
+  automatic,  ///< `rest` if the first pressure is nearly 0, otherwise `unknown`
   rest,       ///< the finger is at rest under the first pressure
   unknown,    ///< the state is unknown and is estimated from the readings
 };

@@ -105,9 +105,11 @@ class SOFTGRIP_API Model {
 
   /// Simulates the finger. At the start, the finger is at rest under the first pressure. The command
   /// `softgrip simulate` computes its result in the same way. Throws InvalidArgument if an argument is
-  /// invalid. @param time_s        times [s], at least 1 value, increasing @param pressure_kpa  commanded
-  /// pressure [kPa], one value per time @param options       settings of hold, noise, supply pressure and
-  /// temperature @return the readings, one value per time, in the unit of the model
+  /// invalid.
+  /// @param time_s  times [s], at least 1 value, increasing
+  /// @param pressure_kpa  commanded pressure [kPa], one value per time
+  /// @param options  settings of hold, noise, supply pressure and temperature
+  /// @return the readings, one value per time, in the unit of the model
   [[nodiscard]] std::vector<double> simulate(std::span<const double> time_s,
                                              std::span<const double> pressure_kpa,
                                              const SimulateOptions& options = {}) const;
@@ -117,11 +119,10 @@ class SOFTGRIP_API Model {
   /// compensates lags by lead, and compensates dead times by preview. If the first value of the reference
   /// differs from the displacement at rest, this difference decays in 0.5 s or more. Call simulate() with
   /// this command and `held` = true to compute the displacement that the finger then has. Throws
-  /// InvalidArgument if an argument is invalid, and Refused if the model has no inverse. @param time_s
-  /// times [s], at least 2 values, with equal steps (within 1e-6 of the step)
-  ///                      of 0.0001 to 1 s
-  /// @param displacement  the reference in the unit of the model, one value per time @param options
-  /// limits of the command
+  /// InvalidArgument if an argument is invalid, and Refused if the model has no inverse.
+  /// @param time_s  times [s], at least 2 values, with equal steps (within 1e-6 of the step) of 0.0001 to 1 s
+  /// @param displacement  the reference in the unit of the model, one value per time
+  /// @param options  limits of the command
   [[nodiscard]] Inverse inverse(std::span<const double> time_s, std::span<const double> displacement,
                                 const InverseOptions& options = {}) const;
 
