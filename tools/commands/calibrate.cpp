@@ -61,7 +61,7 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Sets the pressures of the two calibration positions to the values of --at-kpa, or to default values if the
+/// Sets the pressures of the two calibration points to the values of --at-kpa, or to default values if the
 /// option is absent. Refuses values outside the limits.
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
@@ -325,7 +325,8 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->footer(
       "Questions go to the standard error. Answers are read line by line from the standard input.\nExit "
       "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs,\n6 no "
-      "calibration can be computed from the measurements, or a required sensor gave no valid readings.");
+      "calibration can be computed from the measurements, a required sensor gave no valid readings, or "
+      "doubtful results were not written.");
 }
 
 }  // namespace softgrip::tools

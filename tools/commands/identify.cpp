@@ -51,8 +51,8 @@ sysid::ShowProgress progress_on(ProgressLine& line, model::OutputUnit output_uni
 
 constexpr const char* automatic = "auto";
 
-/// Returns the set of model structures from which the command chooses one, or nullopt if the user gave a
-/// structure.
+/// Returns the set of model structures from which the command chooses one, or nullopt without --structure:
+/// the start model or the default model then gives the structure.
 std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& options) {
   using sysid::HysteresisForm, sysid::StructureQuestion;
   if (options.structure == name_of(HysteresisForm::bouc_wen)) return StructureQuestion::bouc_wen;
@@ -217,10 +217,10 @@ void add_structure_option(CLI::App& command, IdentifyOptions& options) {
                                        std::string(name_of(HysteresisForm::play))};
   CLI::Option* const structure =
       command
-          .add_option(
-              "--structure", options.structure,
-              "Select the model structure by the error on held-out blocks. Type of the hysteresis:  " +
-                  names[0] + ", " + names[1] + " or " + names[2] + " [the structure of the start model]")
+          .add_option("--structure", options.structure,
+                      "Select the model structure by the error on held-out blocks. Type of the hysteresis: " +
+                          names[0] + ", " + names[1] + " or " + names[2] +
+                          " [the structure of the start model]")
           ->check(CLI::IsMember(names));
   for (const char* other : {"--branches", "--fix", "--free", "--exponents", "--robust", "--profile"})
     structure->excludes(command.get_option(other));

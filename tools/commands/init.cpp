@@ -90,8 +90,8 @@ std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, Rig
   return fail(ExitCode::usage, "--" + fact.key + " is required: " + complaint);
 }
 
-/// Reports why the options give no valid rig file. The file was not written, so the lines of its text are
-/// printed without their numbers.
+/// Reports why the options give no valid rig file. The file was not written, so the problems are printed
+/// without their locations in the file.
 ExitCode refuse_draft(const InitOptions& options, RigDraft draft, const document::Problems& problems) {
   std::string why;
   for (const document::Problem& problem : problems.list()) why += "\n  " + problem.message;

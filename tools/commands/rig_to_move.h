@@ -54,8 +54,8 @@ class ManualRig {
 [[nodiscard]] tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path,
                                                                 const std::string& channel, bool yes);
 
-/// Returns a function that reads the sensor through the board. The outputs stay at their lowest values, so
-/// the rig moves nothing.
+/// Returns a function that reads the sensor through the board. The outputs stay at the rest pressures, so the
+/// rig moves nothing.
 [[nodiscard]] GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent);
 
 }  // namespace softgrip::tools

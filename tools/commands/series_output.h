@@ -29,8 +29,8 @@ namespace softgrip::tools {
                                                       const std::string& model, bool held_out);
 
 /// Returns the series of a diagnosis: the given, the refitted and, if it exists, the extended model. Both
-/// fitted models use all readings. The held-out results in diagnosis.json come from fits without the held-out
-/// readings.
+/// fitted models use all readings except outliers. The held-out results in diagnosis.json come from fits
+/// without the held-out readings.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
                                                       const std::vector<sysid::Log>& logs);
 

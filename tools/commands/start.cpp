@@ -54,9 +54,9 @@ struct Break {
   ClientFailure failure;
 };
 
-/// Follows one start, from the request to the end of the sequence or of the user's time limit. If the program
-/// ends for another reason, it stops the sequence first, because the sequence must not continue without the
-/// program.
+/// Follows one start from the request until the daemon has accepted it or, with --wait, until the sequence
+/// has ended. If the program ends earlier, for example after a signal, it first stops the sequence, because
+/// the sequence must not continue without the program.
 class FollowedStart {
  public:
   FollowedStart(const StartOptions& options, DaemonClient& client)
@@ -81,7 +81,8 @@ class FollowedStart {
                            ///< SIGPIPE
 };
 
-/// Waits until the descriptor is readable or a signal arrives. Returns the signal, or 0 if there was none.
+/// Waits until the descriptor is readable, a signal arrives or `patience` has elapsed. Returns the signal, or
+/// 0 if there was none.
 int FollowedStart::signal_within(std::chrono::milliseconds patience, int descriptor) {
   std::array<pollfd, 2> watched{{{signals_.get(), POLLIN, 0}, {descriptor, POLLIN, 0}}};
   if (::poll(watched.data(), watched.size(), static_cast<int>(patience.count())) <= 0) return 0;

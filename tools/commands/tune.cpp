@@ -173,7 +173,7 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
       ->check(CLI::IsMember(control::feedforward_names.names()));
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "Highest pressure, if --rig is not given [60]")
+                   "Highest pressure [the limit in the rig file, or 60]")
       ->check(number_between(1.0, 1000.0));
   command
       ->add_option("--mismatch-percent", options->mismatch_percent,
@@ -188,10 +188,12 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   command->add_option("--frequencies-hz", options->task.frequencies_hz, "Frequencies of the tracked sines")
       ->check(number_between(0.01, 5.0))
       ->capture_default_str();
-  command->add_option("--noise-mm", options->task.noise_mm, "Noise of the sensor, if --rig is not given")
+  command
+      ->add_option("--noise-mm", options->task.noise_mm,
+                   "Standard deviation of the sensor noise; the value in the rig file has priority")
       ->check(number_between(0.0, 10.0))
       ->capture_default_str();
-  command->add_option("--draws", options->task.draws, "Fingers")
+  command->add_option("--draws", options->task.draws, "Number of simulated fingers with model errors")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--seed", options->task.seed, "Seed of fingers and noise")->capture_default_str();

@@ -45,7 +45,7 @@ std::string summary_line(const sysid::Validation& v, const sysid::Score& s) {
                                            : "no settled cycle, because the command does not repeat";
   line += "; driven by the " + name_of(s.drive);
   if (s.diverges)
-    line += "; FAILED: it diverges";
+    line += "; FAILED: the prediction diverges";
   else if (!is_acceptable(v, s))
     line += "; FAILED: above " + significant(*v.at_most_percent) + " %";
   return line;

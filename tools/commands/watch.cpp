@@ -151,8 +151,8 @@ void LiveWatch::ask_for_events() {
   if (events_asked_ || now_s() < events_due_s_) return;
   events_asked_ = true;
   events_due_s_ = now_s() + event_pause_s;
-  // The first request fetches only the id of the newest event, because events from before the start of the
-  // program are not shown.
+  // The first request fetches only the id of the newest event. The next request then fetches the last
+  // `events_shown` events and all newer events.
   ask({{"command", "events"}, {"since", newest_event_}, {"limit", events_known_ ? event_page : 1}});
 }
 

@@ -235,7 +235,7 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
   write("creeping.yaml", model::to_yaml(creeping));
   EXPECT_EQ(run("validate --model creeping.yaml --data tp1.csv --out checked"), 6) << read("out.txt");
   EXPECT_NE(read("out.txt").find("the prediction of tp1 diverges"), std::string::npos) << read("out.txt");
-  EXPECT_NE(read("out.txt").find("FAILED: it diverges"), std::string::npos) << read("out.txt");
+  EXPECT_NE(read("out.txt").find("FAILED: the prediction diverges"), std::string::npos) << read("out.txt");
   const std::string identify =
       "identify --start creeping.yaml --free bouc_wen.alpha_mm_per_kpa --starts 1 --data loading.csv --out ";
   EXPECT_EQ(run(identify + "fitted"), 0) << read("out.txt");
