@@ -94,8 +94,8 @@ class BusInquiry {
   }
 
  private:
-  /// Sends the request. Opens a session first if no session is open, because a time-out or a wrong response
-  /// has closed it.
+  /// Sends the request. Opens a session first if no session is open: for the first request, and after a
+  /// time-out or a wrong response, which closes the session.
   Heard ask(const RegisterRead& question) {
     const double patience_s = std::max(rig_.loop.exchange_deadline_s, shortest_patience_s);
     Heard heard{BusStatus::timed_out, 0, {}, {}};

@@ -31,9 +31,9 @@ struct Results {
                                  ///< person moved the target
 };
 
-/// Returns YAML lines for the rig file: the maps `sensor`, `valve` and `pressure_monitor` of the channel,
-/// with the results of the calibration as comments. A value that was not calibrated is copied from the rig
-/// file.
+/// Returns YAML lines for the rig file: those of the maps `sensor`, `valve` and `pressure_monitor` of the
+/// channel that were calibrated, with the results of the calibration as comments. A value that was not
+/// calibrated is copied from the rig file.
 [[nodiscard]] std::string snippet(const rig::RigFile& rig, const Results& results);
 
 /// Formats a number for a rig file: rounded to `decimals`, without trailing zeros.
@@ -60,9 +60,10 @@ inline constexpr double most_share_off = 0.2;
 [[nodiscard]] std::vector<std::string> plausibility_warnings(const rig::RigFile& rig, const Results& results);
 
 /// Returns the text of the rig file with the new points of the calibrated maps. All other lines, including
-/// comments, stay unchanged. A comment above each map states the date and the error of the calibration.
-/// `channel_defaults` is not changed: the new points are added to the channel. The rig-file reader has
-/// accepted the new text. The error is a sentence that says why a person must insert the lines.
+/// comments, stay unchanged. A comment above each map states the date and the error of the calibration. In a
+/// rig with several channels, `channel_defaults` is not changed: the new points are added to the channel. The
+/// rig-file reader has accepted the new text. The error is a sentence that says why a person must insert the
+/// lines.
 [[nodiscard]] tl::expected<std::string, std::string> updated_rig(const std::string& text,
                                                                  const rig::RigFile& rig,
                                                                  const Results& results);

@@ -23,8 +23,8 @@ void judge_state(const Json& status, const std::string& rig, Findings& findings)
   }
 }
 
-/// Returns the name of another finding that explains the latched fault; "" if the cause of the fault is no
-/// longer present.
+/// Returns the name of another finding that explains the latched fault; "" if no finding does, for example
+/// because the cause of the fault is no longer present.
 std::string judged_elsewhere(const Json& status, const Json& fault) {
   const Json& present = json_member(fault, "present");
   const std::string code = json_text(present, "code");

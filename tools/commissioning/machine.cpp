@@ -29,7 +29,7 @@ using daemon::RealTimeStep;
 
 constexpr double us_per_ns = 1e-3;
 constexpr double probe_s = 1;
-/// Size of one row of run.csv with its line break [bytes], measured for the rig files in config/rigs.
+/// Size of one row of run.csv with its line break [bytes], measured for the rig files in config/.
 constexpr double bytes_per_row = 125;
 constexpr double s_per_hour = 3600;
 constexpr double h_per_day = 24;

@@ -98,8 +98,8 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
-  /// Prevents motion away from rest until the sensors in `sight` have given a valid reading. After this
-  /// reading, the session ends when a sensor has given `invalid_reading_cycles` consecutive invalid readings.
+  /// Prevents motion away from rest until the sensors in `sight` have given a valid reading. The session ends
+  /// after `invalid_reading_cycles` consecutive cycles in which one of these sensors has no valid reading.
   void require(Sight sight);
   /// Holds the commands for `duration_s` and returns the statistics of the readings of every channel.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});

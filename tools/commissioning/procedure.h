@@ -81,8 +81,8 @@ struct GaugeVisit {
   std::size_t count = 0;   ///< number of readings in reading_mm
 };
 /// Reads the sensor while a person holds its target at one position after the other. The person may enter a
-/// different position or skip a position. The rig moves nothing. A position at which the sensor gives no
-/// valid reading is not part of the result.
+/// different position or skip a position. The rig moves nothing. A position at which the sensor gives an
+/// invalid reading is not part of the result.
 [[nodiscard]] Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operator& person,
                                                                const Settings& settings,
                                                                const std::vector<double>& positions_mm);
@@ -101,8 +101,7 @@ struct ValveResult {
                                                     bool by_monitor);
 
 struct DeadZoneResult {
-  std::optional<DeadZone> zone;  ///< dead zone of the valve; nullopt: the response did not rise during the
-                                 ///< ramp
+  std::optional<DeadZone> zone;  ///< dead zone of the valve; search_dead_zone() always sets it
   bool by_pressure = false;      ///< true: the pressure monitor has measured the response; false: the
                                  ///< displacement sensor has measured it, which is less reliable
   double highest_kpa = 0;        ///< pressure at the end of the ramp [kPa]

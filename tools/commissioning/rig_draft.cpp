@@ -56,7 +56,7 @@ std::string pair_text(double first, double second) {
 constexpr std::size_t max_fingers = 16;
 
 /// Returns the path as the rig file must contain it: relative to the rig file's folder if the path is in this
-/// folder or below it, otherwise unchanged.
+/// folder or below it, otherwise absolute.
 std::string named(const std::string& path, const std::filesystem::path& folder) {
   const auto relative = std::filesystem::proximate(path, folder);
   if (relative.empty() || relative.begin()->string() == "..")

@@ -66,8 +66,8 @@ struct ElectricalRange {
 [[nodiscard]] ElectricalRange input_range(const RigDraft& draft);
 [[nodiscard]] drivers::ElectricalUnit output_unit(const RigDraft& draft) noexcept;
 [[nodiscard]] drivers::ElectricalUnit input_unit(const RigDraft& draft) noexcept;
-/// Returns true if every module of the board vents when communication stops. Also returns true for a
-/// simulated board.
+/// Returns true if the module of the valves has a watchdog, which vents when communication stops. Also
+/// returns true for a simulated board.
 [[nodiscard]] bool has_watchdog(const RigDraft& draft) noexcept;
 
 /// Returns the text of a rig file with comments, for the path `path`. The rig-file reader checks the text. If
