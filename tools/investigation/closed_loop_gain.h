@@ -1,7 +1,7 @@
 #pragma once
-// Computes the benefit of an extended model in closed loop. Simulated rigs track the same reference twice:
-// once with the refitted model in the feedforward, once with the extended model. The PID gains are tuned by
-// the same search method in both cases.
+// Computes the benefit of an extended model in closed loop. Simulated rigs track the same reference three
+// times: with the refitted model in the feedforward, with the extended model in the feedforward, and with the
+// PID controller alone. The PID gains of all three cases are tuned by the same search method.
 
 #include <cstdint>
 #include <optional>

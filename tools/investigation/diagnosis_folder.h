@@ -36,7 +36,8 @@ struct DiagnosisSource {
   std::vector<std::string> call;  ///< command line that started the diagnosis; empty: no command started it
 };
 
-/// Returns the names of the files that write_diagnosis_folder() writes, replaces or removes.
+/// Returns the names of the files that write_diagnosis_folder() may replace or remove. It never replaces an
+/// existing gauge_positions.csv, so this file is not in the list.
 [[nodiscard]] std::vector<std::string> diagnosis_files();
 
 /// Writes the files into `folder` and returns the text of diagnosis.json. If this diagnosis has no

@@ -66,9 +66,9 @@ tl::expected<void, NotPlayed> call(const std::string& command, const std::string
   const bool by_user =
       (WIFEXITED(status) && by_signal) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
   if (by_user) note_ending_signal(SIGINT);
-  if (by_signal) return stopped("the command of --rig-command was stopped by a signal");
+  if (by_signal) return stopped("the command '" + command + "' was stopped by a signal");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return failed("the command of --rig-command failed with exit code " +
+    return failed("the command '" + command + "' failed with exit code " +
                   std::to_string(WEXITSTATUS(status)));
   return {};
 }

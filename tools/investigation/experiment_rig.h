@@ -46,7 +46,7 @@ struct ExperimentRig {
 [[nodiscard]] std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name);
 
 /// Returns the rig with the channel of this name selected. An empty name selects the channel of a rig with
-/// one channel. The error is a sentence.
+/// one channel. A channel whose rest pressure is not 0 kPa is refused. The error is a sentence.
 [[nodiscard]] tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig,
                                                                       const std::string& channel);
 
@@ -86,8 +86,8 @@ using Consent = std::function<bool(const std::string& what)>;
 [[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
     const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
 
-/// Returns a sentence if the command of the log differs from the waveform in duration, largest pressure or
-/// total travel; otherwise nullopt.
+/// Returns a sentence if the log is shorter than the waveform, or if its command differs from the waveform in
+/// largest pressure or total travel; otherwise nullopt.
 [[nodiscard]] std::optional<std::string> broken_promise(const sysid::Waveform& asked, const sysid::Log& log);
 
 /// Returns a sentence if an object blocked the finger; otherwise nullopt. The check uses pressures up to

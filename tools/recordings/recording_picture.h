@@ -51,8 +51,8 @@ struct Tracking {
 /// has no columns `step` and `result`.
 [[nodiscard]] std::vector<char> gripping_of(const sysid::Log& log);
 
-/// Returns the statistics as text: "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm short
-/// of the reference".
+/// Returns the statistics as text: "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm below
+/// the reference".
 [[nodiscard]] std::string to_text(const Tracking& tracking);
 
 }  // namespace softgrip::tools
