@@ -14,8 +14,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* own_name = "softgrip-plc";
 constexpr double watch_rate_hz = 25;
-/// Longest time between two lines of a daemon. If no line arrives in this time, the daemon counts as
-/// disconnected.
+/// Longest time between two status lines of a daemon. If no status line arrives in this time, the daemon
+/// counts as not responding.
 constexpr Nanoseconds status_timeout = ns_per_s;
 constexpr Nanoseconds heartbeat_period = ns_per_s / 10;
 /// Largest number of commands that wait for a response of the daemon. This number of commands fits into the
@@ -36,8 +36,9 @@ CommandCode command_of(Reaction reaction) {
   return CommandCode::none;
 }
 
-/// Returns true if `line` is the final response to a reaction (stop or vent because a client is silent). A
-/// response that the daemon is busy or starting is not final, so the reaction is sent again.
+/// Returns true if `line` is the final response to a reaction (the stop, vent or release that `when_silent`
+/// selects for a silent client). A response that the daemon is busy or starting is not final, so the reaction
+/// is sent again.
 bool is_final(const Json& line) {
   if (line.value("ok", false)) return true;
   const Json error = line.value("error", Json::object());
@@ -121,8 +122,8 @@ void Gateway::check_heartbeat(Nanoseconds now) {
   if (heartbeat_monitor_.check(now)) reaction_covers_silence_ = false;
 }
 
-/// Sends the reaction to a silent client, which is stop or vent. Repeats it until a daemon has given a final
-/// response.
+/// Sends the reaction to a silent client: stop, vent or release, as `when_silent` selects. Repeats it until a
+/// daemon has given a final response.
 void Gateway::send_reaction(Nanoseconds now) {
   check_heartbeat(now);
   if (settings_.when_silent == Reaction::nothing) heartbeat_monitor_.confirm();

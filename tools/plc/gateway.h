@@ -53,9 +53,9 @@ class Gateway {
   [[nodiscard]] bool daemon_responds(Nanoseconds now) const noexcept;
   /// Returns the counters of the commands to which the daemon has not responded, the oldest command first.
   [[nodiscard]] std::vector<std::uint16_t> pending_counters() const;
-  /// reaction_pending() returns true if stop or vent was sent because a client is silent, and the daemon has
-  /// not responded to this command. reaction_covers_silence() returns true if the response to this command
-  /// also covers the latest silence of a client.
+  /// reaction_pending() returns true if a stop, vent or release was sent because a client is silent, and the
+  /// daemon has not responded to this command. reaction_covers_silence() returns true if the response to this
+  /// command also covers the latest silence of a client.
   [[nodiscard]] bool reaction_pending() const noexcept { return reaction_id_.has_value(); }
   [[nodiscard]] bool reaction_covers_silence() const noexcept {
     return reaction_id_ && reaction_covers_silence_;
@@ -80,11 +80,11 @@ class Gateway {
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, std::uint16_t> pending_commands_;  // counter of each command that has no response,
                                                              // by request id
-  // Request id of the stop or vent command that was sent because of a silent client; nullopt: no such command
-  // waits for a response.
+  // Request id of the stop, vent or release that was sent because of a silent client; nullopt: no such
+  // command waits for a response.
   std::optional<std::uint64_t> reaction_id_;
-  bool reaction_covers_silence_ = false;  // true: no client has become silent since the pending stop
-                                          // or vent was sent
+  bool reaction_covers_silence_ =
+      false;  // true: no client has become silent since the pending stop, vent or release was sent
   Nanoseconds reaction_sent_at_ = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Detects that the client (Modbus master) is silent. After a silence, a stop or vent is required until the
-// daemon has confirmed the stop or vent.
+// Detects that the client (Modbus master) is silent. After a silence, the reaction that the file selects
+// (stop, vent or release) is required until the daemon has confirmed it.
 
 #include <optional>
 
