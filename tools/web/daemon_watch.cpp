@@ -12,8 +12,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double watch_rate_hz = 5;
-/// Longest time between two lines of a daemon. If no line arrives in this time, the daemon counts as
-/// disconnected.
+/// Longest time between two status lines of a daemon. After this time without a status line, the daemon
+/// counts as disconnected and the connection is opened again.
 constexpr Nanoseconds status_timeout = 3 * ns_per_s / 2;
 constexpr Nanoseconds statistics_period = 2 * ns_per_s;
 constexpr Nanoseconds sequences_period = 10 * ns_per_s;

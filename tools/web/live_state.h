@@ -18,7 +18,8 @@ class LiveState {
   static constexpr double trend_s = 60;
   static constexpr std::size_t events_kept = 200;
 
-  /// The functions take_... store new data of the daemon, and add a message for the open pages.
+  /// The functions set_...() and add_event() store new data of the daemon, and add a message for the open
+  /// pages.
   void set_status(nlohmann::ordered_json status);
   void add_event(nlohmann::ordered_json event);
   void set_statistics(nlohmann::ordered_json statistics);

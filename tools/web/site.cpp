@@ -219,10 +219,10 @@ std::string Site::metrics() const {
   metrics.family("softgrip_web_pages", gauge, "Open pages.");
   metrics.sample(static_cast<double>(counts_.streams));
   metrics.family("softgrip_web_unsent_bytes", gauge,
-                 "Number of bytes in responses that clients have not read yet.");
+                 "Number of bytes that wait in softgrip-web until they can be sent to clients.");
   metrics.sample(static_cast<double>(counts_.unsent));
   metrics.family("softgrip_web_turned_away_total", counter,
-                 "Number of connections that were refused, or that were closed to allow new connections.");
+                 "Number of connections that were refused, or that were closed to make room for others.");
   metrics.sample(static_cast<double>(counts_.rejected));
   metrics.family("softgrip_web_answers_total", counter, "HTTP responses, by status.");
   for (const auto& [status, count] : counts_.responses)

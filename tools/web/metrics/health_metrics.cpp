@@ -21,7 +21,7 @@ void add_health_metrics(const Json& health, MetricText& metrics) {
   const Json& shared = json_member(health, "shared");
   if (shared.is_array() && !shared.empty()) {
     metrics.family("softgrip_health_shared", gauge,
-                   "1 for each indicator that has changed by the same amount at all fingers of the rig.");
+                   "1 for each indicator that has changed in the same direction at all fingers of the rig.");
     for (const Json& number : shared) {
       if (number.is_string()) metrics.sample({{"number", number.get<std::string>()}}, 1);
     }
