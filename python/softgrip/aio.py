@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 class AsyncGripper:
     """The client of softgripd for asyncio: `async with AsyncGripper(name="cell 4") as gripper:`. It has the methods of
-    `Gripper`. Several tasks may share an object."""
+    `Gripper`, but `connect()` in place of `reconnect()`. Several tasks may share an object."""
 
     def __init__(self, path: Optional[str] = None, *, name: str, answer_s: float = 5.0) -> None:
         self.path = path or default_path()

@@ -74,10 +74,9 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
 
     structure: "start" uses the structure of `start`, or the default structure with `branches` creep branches. "auto",
     "bouc_wen" and "prandtl_ishlinskii" select a structure by the error on held-out blocks of the logs ("play" is a
-    deprecated name of "prandtl_ishlinskii"). fixed: parameters that keep
-    their start value. free: parameters that are estimated; by default, all parameters except those in `fixed`. starts:
-    number of start points. fit_share: share of each log that is fitted, from its start; 0.05 to 1. threads: number of
-    threads, 0 for one per processor core. drive: "command" or "measured" pressure as the input. begin: state of the
+    deprecated name of "prandtl_ishlinskii"). fixed: parameters that keep their start value. free: parameters that are
+    estimated; by default, all parameters except those in `fixed`. starts: number of start points. fit_share: share of
+    each log that is fitted, from its start; 0.05 to 1. threads: number of threads, 0 for one per processor core. drive: "command" or "measured" pressure as the input. begin: state of the
     finger at the start of a log, "auto", "rest" or "unknown". validation: logs that are predicted but not fitted.
     progress: function that is called with a text about the present stage; an exception in this function ends the
     computation, as Ctrl-C does.
@@ -118,7 +117,7 @@ def diagnose(model: Model, logs: Logs, healthy: Optional[Logs] = None, *, seed: 
              progress: Progress = None) -> Union[Diagnosis, Change]:
     """Determines the error of a model on logs and the causes of this error, as `softgrip diagnose` does. With logs of
     the healthy finger in `healthy`, determines how the finger has changed since these logs, as `softgrip diagnose
-    --healthy` does. The result is then a `Change`."""
+    --healthy` does. The result is then a `Change`, and `null_campaigns`, `drive` and `begin` have no effect."""
     core = _model("model", model)
     columns = _columns("logs", logs)
     seed = _whole("seed", seed)
@@ -139,11 +138,12 @@ def health(recordings: Union[Path, Iterable[Path]], baseline: Path, *, points: s
            notes: Optional[Path] = None, scores: Optional[Path] = None, progress: Progress = None) -> Health:
     """Detects changed fingers in recordings of ordinary grips, as `softgrip health` does.
 
-    recordings: folders of recordings, or folders that contain such folders. baseline: folder of `softgrip baseline`.
-    points: a point of a control chart is a "day" or a "run". false_alarm_points: mean number of points between two
-    false alarms of a healthy finger. notes: file of maintenance records. scores: file that stores the indicators of all
-    recordings that were read so far. Recordings whose indicators are in this file are not read again. The call replaces
-    the file at its end.
+    recordings: folders of recordings, or folders that contain such folders. baseline: folder of `softgrip baseline`. If
+    it contains a folder with the name of a finger, the baseline in that folder applies to this finger. points: a point
+    of a control chart is a "day" or a "run". false_alarm_points: mean number of points between two false alarms of a
+    healthy finger. notes: file of maintenance records. scores: file that stores the indicators of all recordings that
+    were read so far. Recordings whose indicators for the current baseline are in this file are not read again. The call
+    replaces the file at its end.
     """
     if isinstance(recordings, (str, os.PathLike)):
         recordings = [recordings]

@@ -68,8 +68,8 @@ class Gripper:
         return Listing.of(self.ask("sequences"), "sequences").sequences
 
     def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
-        """Starts the sequence with the name `name`, or the sequence in `text`. Additional keyword arguments are
-        parameters of the sequence, for example `squeeze_kpa=4`."""
+        """Starts the sequence with the name `sequence`. If `text` is given, `text` is the content of the sequence.
+        Additional keyword arguments are parameters of the sequence, for example `squeeze_kpa=4`."""
         return Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
 
     def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:

@@ -17,8 +17,8 @@ class NoDaemon(SoftgripError):
 
 
 class ConnectionLost(SoftgripError):
-    """The connection to the daemon was lost. After `reconnect()`, `events()` continues with the events that the client
-    has missed."""
+    """The connection to the daemon was lost. After `Gripper.reconnect()` or `AsyncGripper.connect()`, `events()`
+    continues with the events that the client has missed, as far as the daemon still stores them."""
 
 
 class NotAnswered(SoftgripError, TimeoutError):
@@ -73,7 +73,8 @@ class StopNotConfirmed(SoftgripError):
 
 
 class MalformedFile(SoftgripError, ValueError):
-    """A recording, log or report does not have the format that softgrip writes."""
+    """The content of a file is invalid, or the file cannot be read or written. Examples are recordings, logs, models and
+    reports."""
 
 
 class UnreadableFile(OSError, MalformedFile):

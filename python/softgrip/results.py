@@ -257,9 +257,9 @@ class Change(_Reported):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class HealthIndicator:
-    """An indicator of a finger. `value` is its value at the last point. `reference` and `spread` are its mean and
-    standard deviation since the last maintenance record. An unknown `value`, `reference` or `spread` is None. `values`
-    has one value per point, NaN for a point without a value."""
+    """An indicator of a finger. `value` is its value at the last point that has a value. `reference` and `spread` are its
+    mean and standard deviation since the last maintenance record. An unknown `value`, `reference` or `spread` is None.
+    `values` has one value per point, for the recipe of the reference; NaN for a point without such a value."""
 
     id: str
     title: str
@@ -340,7 +340,8 @@ class FingerHealth:
 @dataclasses.dataclass(frozen=True, eq=False)
 class Health:
     """The result of `health()`. `alarm` is True while an alarm of a finger is active. `warnings` describe changes that
-    are not attributed to a finger. `skipped` contains the name of each recording that was not used, with the reason."""
+    several fingers share, and changes that are not attributed to a finger. `skipped` contains the name of each recording
+    that was not used, or in which one finger was not used, with the reason."""
 
     alarm: bool
     fingers: Sequence[FingerHealth]
