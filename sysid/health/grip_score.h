@@ -60,8 +60,8 @@ enum class Part : std::uint8_t {
   /// a fault
   neither,
   rest,  ///< samples before the first motion of the finger
-  free,
-  held,  ///< HOLDING with the command that was active at the start of HOLDING
+  free,  ///< samples in free motion
+  held,  ///< samples in HOLDING whose command is still the command at the start of HOLDING
 };
 
 struct GripParts {
