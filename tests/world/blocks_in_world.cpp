@@ -19,15 +19,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* ends_with_block = "the end of a Python block stops its sequence";
-constexpr const char* stops_no_other = "leaving a block stops no other start";
+constexpr const char* stops_no_other = "the end of a Python block stops no other sequence";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};
 /// Interval at which a client reads the messages of the daemon.
 constexpr Nanoseconds client_look_pause = ns_per_s / 50;
 /// Longest time for which a client waits for the response of the daemon to its request.
 constexpr Nanoseconds block_patience = 5 * ns_per_s;
-/// Longest permitted time from a stop request to the end of the sequence. Time during incidents is not
-/// counted.
+/// Longest permitted time from a stop request to the end of the sequence. The time is counted again from 0
+/// after a pause of the daemon and after a disturbance of the bus.
 constexpr Nanoseconds block_end_bound = 2 * ns_per_s;
 /// Fraction of the blocks in which the client program is killed before it sends a stop.
 constexpr double killed_share = 0.1;
@@ -43,7 +43,8 @@ struct Started {
   bool left = false;                     ///< true: the client has sent a request that stops this start
   bool confirmed = false;                ///< true: the daemon has confirmed the request that stops this start
   bool halted = false;     ///< true: another client has sent a stop, a vent or a release after this start
-  Nanoseconds waited = 0;  ///< time since the stop request was sent, except during incidents
+  Nanoseconds waited = 0;  ///< time since the stop request, or since the last pause of the daemon or
+                           ///< disturbance of the bus after it
 };
 
 class BlocksInWorld final : public Guest {
@@ -87,11 +88,12 @@ class BlocksInWorld final : public Guest {
       if (runs && started.confirmed)
         breaks(ends_with_block, "the daemon has confirmed the stop, but the sequence is still running");
       if (runs && started.waited > block_end_bound)
-        breaks(ends_with_block, "the sequence is running 2 s after its stop was sent");
+        breaks(ends_with_block, "the sequence is still running more than 2 s after the stop request");
       const daemon::Service::FinishedSequence& ending = daemon->service.last_finished();
       if (ending.request == *started.request && ending.end == control::SequenceEnd::stopped &&
           !started.left && !started.halted)
-        breaks(stops_no_other, "a sequence was stopped without a request of a client");
+        breaks(stops_no_other,
+               "a sequence was stopped, but no client has requested a stop, a vent or a release");
     }
   }
 

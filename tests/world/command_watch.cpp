@@ -15,15 +15,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* executed_once = "softgrip-plc executes each command at most once";
-constexpr const char* asked_before = "only what a master has asked is executed";
-constexpr const char* true_end = "a master reads the true end of its command";
+constexpr const char* asked_before = "softgrip-plc executes only commands of a master";
+constexpr const char* true_end = "a master reads the true result of its command";
 constexpr const char* outlives_nothing = "a stop or a vent always ends an earlier start";
 constexpr const char* reaction_kept = "the reaction to a stopped heartbeat is not lost";
 
 constexpr auto start_code = static_cast<std::uint16_t>(plc::CommandCode::start);
 constexpr auto vent_code = static_cast<std::uint16_t>(plc::CommandCode::vent);
 /// Longest permitted time from a heartbeat time-out of a master until a daemon responds to the stop that the
-/// gateway then sends. Time during incidents is not counted.
+/// gateway then sends. The time is counted again from 0 after an incident that affects the gateway or the
+/// daemon.
 constexpr Nanoseconds reaction_bound = 2 * ns_per_s;
 
 /// Returns true if no further stop is necessary after this response: the daemon has stopped the sequence, or
@@ -67,9 +68,9 @@ void CommandWatch::execute(const std::string& name, const std::optional<Block>& 
   check(!asked.executed, executed_once, "a command is executed twice");
   check(!asked.read_as_refused, true_end, "a command that the gateway reported as refused is executed");
   check(asked.code != start_code || cause->halts == halts_, outlives_nothing,
-        "the block of the start is older than a stop or a vent");
+        "a start is executed, although its register block was written before the last stop or vent");
   check(asked.code != start_code || !owed_, reaction_kept,
-        "a start is executed before the reaction to a silent master");
+        "a start is executed, although no daemon has responded yet to the stop for a silent master");
   if (asked.code == vent_code) ++halts_;
   asked.executed = true;
   ++executed_;

@@ -86,7 +86,8 @@ class CommandWatch {
   std::uint64_t silence_number_ = 0;
   bool owed_ = false;  // true: no daemon has responded yet to the stop that the newest time-out requires
   Nanoseconds seen_ = 0;
-  Nanoseconds waited_ = 0;  // time since the newest time-out required a stop, except during incidents
+  Nanoseconds waited_ = 0;  // time since the newest time-out required a stop, or since the last later
+                            // incident that affects the gateway or the daemon
 };
 
 }  // namespace softgrip::world

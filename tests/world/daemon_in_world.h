@@ -51,8 +51,7 @@ class LoopClock final : public WorldClock {
 /// The settings in which two runs of the daemon can differ.
 struct Life {
   std::string folder;         ///< folder for the recordings of this run
-  std::string record_folder;  ///< folder of all recordings, instead of the one in the rig file; empty: not
-                              ///< set
+  std::string record_folder;  ///< folder of all recordings; empty: the folder in the rig file
   std::shared_ptr<const daemon::LoadedSequence>
       sequence;  ///< sequence after which the daemon ends, as in `softgrip run`; null: the daemon runs as a
                  ///< service

@@ -243,8 +243,8 @@ std::string text_of(const Incident& incident) {
 
 std::vector<Incident> draw_incidents(const Draw& draw) {
   Drawing drawing(derived_seed(draw.seed, 1));
-  // The mean time between incidents is drawn for each simulation. With a long time, sequences can finish.
-  // With a short time, incidents are frequent.
+  // The mean time between incidents is drawn for each simulation. Only with a long mean time, sequences can
+  // finish.
   const double mean_pause_s = draw.calm * drawing.between(0.25, 4);
   std::vector<Incident> incidents;
   double at_s = 1 + drawing.uniform();

@@ -13,7 +13,7 @@ namespace softgrip::world {
 struct Incident {
   enum class Kind : std::uint8_t {
     start,              ///< a client starts the sequence number `target`
-    interrupted_start,  ///< a client sends a start; another client immediately stops it (`value` 0) or vents
+    interrupted_start,  ///< a start, and immediately afterwards a stop (`value` 0) or a vent (`value` 1)
     stop,
     vent,
     release,
@@ -22,7 +22,8 @@ struct Incident {
     terminate,      ///< the daemon receives SIGTERM and is restarted one second later
     kill,           ///< the daemon receives SIGKILL
     pause,          ///< pauses one thread (`target`: Part) for `duration`
-    pause_late,     ///< pauses the thread immediately after it has next read the clock
+    pause_late,     ///< pauses the thread `target` for `duration`, immediately after its next reading of the
+                    ///< clock
     pause_all,      ///< pauses the whole daemon process for `duration`, like SIGSTOP
     clock_stalls,   ///< the clock of the daemon stops for `duration` and then shows the true time
     line,           ///< for `duration`, every exchange ends with the status `target` (BusStatus)
@@ -59,8 +60,9 @@ struct Incident {
 
 /// Settings for drawing incidents. Incidents occur after the first second and before `length`. Pauses shorter
 /// and longer than `watchdog` are drawn. If `late_bus` is true, two further kinds of incident are drawn: the
-/// bus thread pauses between its last reading of the clock and its next write, and the clock stalls. A daemon
-/// detects these two kinds only if the board reports its own watchdog trip or has no watchdog.
+/// bus thread pauses between its last reading of the clock and its next write, and the clock stalls. The
+/// daemon cannot detect these two kinds. They are drawn only if they cannot cause a late write
+/// (RigShape::may_pause_late()).
 struct Draw {
   std::uint64_t seed = 0;
   Nanoseconds length = 0;

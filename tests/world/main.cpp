@@ -32,7 +32,7 @@ struct Options {
   bool habits = false;
 };
 
-/// Number of simulated worlds from which on every kind of incident must have occurred at least once.
+/// Number of simulated worlds of a tool from which on each count of the tool (struct Met) must be above 0.
 constexpr std::uint64_t enough_worlds = 10;
 
 struct Sum {
@@ -86,15 +86,16 @@ void add(Sum& sum, Tool tool, const WorldResult& result) {
   add(sum, one);
 }
 
-/// Option value for which the seed selects a tool from the list `turns`. Experiments take the longest time,
-/// so this list contains only one of them.
+/// Option value for which the seed selects a tool from the list `turns`. Tool::baseline and Tool::experiment
+/// take the longest time, so the list contains each of them only once.
 constexpr const char* all_tools = "tools";
 constexpr std::array turns{
     Tool::calibrate, Tool::plc,    Tool::doctor,     Tool::run, Tool::blocks, Tool::plc,
     Tool::calibrate, Tool::doctor, Tool::baseline,   Tool::run, Tool::plc,    Tool::blocks,
     Tool::calibrate, Tool::doctor, Tool::experiment, Tool::run, Tool::plc};
 
-/// Factor on --seconds for each tool. Experiments take minutes, so their factor is larger.
+/// Factor on --seconds for each tool. Tool::baseline and Tool::experiment play experiments, which take
+/// minutes, so their factors are larger.
 constexpr std::array<double, tool_count> lives{1, 1, 1, 1, 5, 3, 1, 1};
 
 /// Returns the tool that the user has requested. If the user has requested no tool, returns the tool that
@@ -223,16 +224,19 @@ int run(int argc, char** argv) {
   CLI::App app("Simulates one complete rig for each seed and checks the invariants of docs/reliability.md");
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--count", options.count, "Number of seeds")->capture_default_str();
-  app.add_option("--jobs", options.jobs, "Processes")->capture_default_str();
+  app.add_option("--jobs", options.jobs, "Number of processes")->capture_default_str();
   app.add_option("--tool", options.tool,
                  "Program that is tested on the simulated rig; `tools` tests all tools one after the other")
       ->check(CLI::IsMember(known))
       ->capture_default_str();
-  app.add_option("--seconds", options.length_s, "Simulated time of each world [s]")->capture_default_str();
+  app.add_option(
+         "--seconds", options.length_s,
+         "Simulated time of each world [s]; 5 times as long for the tool baseline, 3 times for experiment")
+      ->capture_default_str();
   app.add_flag("--trace", options.trace, "With --count 1: print all events");
   app.add_flag("--twice", options.twice, "Run each seed twice and compare the results");
   app.add_flag("--habits", options.habits,
-               "Give every seed a board with unusual habits, instead of one seed in 5");
+               "Give every board the unusual properties that otherwise only the boards of 1 seed in 5 have");
   app.add_flag("--stop", options.stop_at_first, "Stop at the first violation");
   CLI11_PARSE(app, argc, argv);
   const Library library = load_library();

@@ -110,7 +110,8 @@ void Monitor::watch_events(Nanoseconds now, const control::TickOutput& output) {
         vent_waits_.reset();
         if (event.request < halted_by_)
           violate(now, "a stop or a vent always ends an earlier start",
-                  fmt::format("request {} started, {} was to end it", event.request, halted_by_));
+                  fmt::format("request {} started, although the later request {} is a stop or a vent",
+                              event.request, halted_by_));
         break;
       case Kind::fault_latched:
       case Kind::sequence_finished:

@@ -25,8 +25,8 @@ struct Violation {
 /// disturbance.
 struct Excuse {
   bool paused = false;   ///< true: a thread or the whole daemon process is paused
-  bool no_line = false;  ///< true: the line or the board prevents exchanges, or has prevented every exchange
-                         ///< since the last success
+  bool no_line = false;  ///< true: the line or the board is disturbed, or no write has reached the board
+                         ///< since the end of the last disturbance or since the start of the program
   bool line_but_for_foreign = false;  ///< true: no_line is true for a reason other than writes of another
                                       ///< client
   bool no_daemon = false;

@@ -26,8 +26,8 @@ constexpr double longest_answer_s = 1.5;
 /// outputs before a write in only 1 of 8 exchanges, so this number is larger than 1.
 constexpr unsigned most_overwritten = 32;
 
-/// A simulated operator who reads the gauge and the manometer. After a delay, the operator enters the true
-/// value.
+/// A simulated operator. After a delay, the operator enters the reading of the simulated displacement sensor
+/// or pressure sensor.
 class PersonInWorld final : public tools::calibrate::Operator {
  public:
   PersonInWorld(Surroundings& around, std::size_t channel, std::uint64_t seed)
@@ -69,7 +69,8 @@ class MotionWorld {
       wrote(began, commands);
     };
     around_.on_exchange = [this] {
-      // The previous exchange has ended. `good_` is true if no incident prevented this exchange.
+      // The previous exchange has ended. Until here, `good_` is true if no incident prevented the previous
+      // exchange.
       spoke_ = spoke_ || good_;
       good_ = around_.line.status == drivers::BusStatus::ok;
       spoke_since_trip_ = true;
@@ -212,8 +213,8 @@ class MotionWorld {
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
       up_ = up_ || commands[i] != control::resting_kpa(around_.shape.rig.settings.channels[i].limits);
-    // After a lost exchange or a gap, the pressure may fall in a single step, so the slew limits do not
-    // apply.
+    // The rest pressures may be written in a single step. After a disturbance of the line, any pressure may
+    // return towards rest in a single step.
     const bool safe_outputs = !up_ || around_.excuse().no_line;
     around_.monitor.write(began, around_.scheduler.now(), outputs, commands, safe_outputs);
     around_.note_write(outputs, commands);

@@ -39,7 +39,7 @@ RecordingsRead check_recordings(const std::string& folder, const std::vector<Nan
       bool all = true;
       for (std::size_t row = 0; row < times.size() && all; row += channels) {
         const std::size_t tick = first + row / channels;
-        // The recorder writes one row at shutdown, for which no tick exists.
+        // The last row of each channel is written at shutdown, and no tick exists for it.
         if (tick >= ticks.size()) {
           all = row + channels >= times.size();
           break;

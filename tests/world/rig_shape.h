@@ -18,9 +18,10 @@ struct RigShape {
   Habits habits;
   std::string text;
 
-  /// Returns true if the bus thread may be paused after it has read the clock. If the board has a settle
-  /// time, the thread determines its commands before it reads the clock. A pause after this reading would
-  /// delay the write of these commands, and the daemon could not prevent the late write.
+  /// Returns true if the tests may pause the bus thread between its reading of the clock and its write. They
+  /// do not pause it in two cases, in which the daemon cannot prevent a late write: any write clears a
+  /// watchdog trip of the board, or the board has a settle time. With a settle time, the thread determines
+  /// its commands before it reads the clock.
   [[nodiscard]] bool may_pause_late() const noexcept {
     return (trip_latches || watchdog == 0) && habits.settle == 0;
   }

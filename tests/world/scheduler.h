@@ -45,9 +45,10 @@ class Scheduler {
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
 
   /// Stops the clock of the daemon for `duration`. Afterwards, the clock shows the true time. During the
-  /// stall, threads that sleep by this clock continue to sleep, and paused threads remain paused. Otherwise,
-  /// a long pause would look short to the daemon. On a board where any write clears a watchdog trip, the
-  /// daemon could then not detect the pause. A second stall during a stall has no effect.
+  /// stall, threads that sleep by this clock continue to sleep, and paused threads remain paused. If a paused
+  /// thread could continue during the stall, the clock would show the daemon a shorter pause. On a board
+  /// where any write clears a watchdog trip, the daemon could then not detect the pause. A second stall
+  /// during a stall has no effect.
   void stall_clock(Nanoseconds duration);
   [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
   /// Returns the time on the clock of the daemon.

@@ -40,7 +40,8 @@ class Surroundings {
   }
   /// Records a write that has reached the board. `outputs_kpa` are the outputs before the write.
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
-  /// Called when a program starts. At this time, the program has not had a successful exchange yet.
+  /// Called when a program starts, and when an unusual property of the board has made an exchange fail. The
+  /// line counts as disturbed until the next write reaches the board.
   void nobody_spoke() noexcept { good_since_ = false; }
   /// Returns the disturbances that the line and the second Modbus client cause at this moment.
   [[nodiscard]] Excuse excuse() const noexcept;

@@ -27,7 +27,7 @@ struct Met {
                             ///< sequences
   std::uint64_t results =
       0;                     ///< calls with a result; for plc: executed commands; for blocks: confirmed stops
-  std::uint64_t pauses = 0;  ///< number of pauses of a thread, of the process or of the clock
+  std::uint64_t pauses = 0;  ///< number of pauses of a thread, of the daemon, of softgrip-plc or of the clock
   /// Number of watchdog trips of the board. For plc, also includes the heartbeat time-outs of masters.
   std::uint64_t gaps = 0;
   std::uint64_t faults = 0;  ///< number of incidents of the line, the board, other clients, the fingers and

@@ -34,13 +34,13 @@ constexpr Nanoseconds longest_end = 60 * ns_per_s;
 /// Longest permitted interval between two ticks of the loop if no incident disturbs the loop.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
-/// Time after the start of a daemon from which on the daemon must not acquire more memory and descriptors.
+/// Time from the start of a daemon to the first check of its memory and its descriptors.
 constexpr Nanoseconds settling = 5 * ns_per_s;
-/// Largest permitted growth of the heap. The event log and a recording each store up to 10,000 events of 0.5
-/// KiB, from which run.json is written. No other data of the daemon may grow.
+/// Largest permitted growth of the heap since the first check. The event log and a recording each store up to
+/// 10,000 events of 0.5 KiB, from which run.json is written. No other data of the daemon may grow.
 constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
-/// Largest permitted number of additional file descriptors. A recording and the file of a sequence use such
-/// descriptors.
+/// Largest permitted number of file descriptors in addition to those that are open before the first daemon
+/// starts. A recording and the file of a sequence use such descriptors.
 constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
@@ -248,8 +248,8 @@ class World final : public Host {
     const std::size_t growth = bytes > settled_bytes_ ? bytes - settled_bytes_ : 0;
     result_.growth_bytes = std::max<std::uint64_t>(result_.growth_bytes, growth);
     if (growth > allowed_growth_bytes)
-      monitor_.leaks(fmt::format("the heap has grown by {} KiB since {} s after its start", growth >> 10,
-                                 settling / ns_per_s));
+      monitor_.leaks(fmt::format("the heap has grown by {} KiB since {} s after the start of the daemon",
+                                 growth >> 10, settling / ns_per_s));
     const std::size_t opened = open_descriptors() - descriptors_;
     result_.descriptors = std::max<std::uint64_t>(result_.descriptors, opened);
     if (opened > allowed_descriptors) monitor_.leaks(fmt::format("{} descriptors", opened));
@@ -297,8 +297,9 @@ class World final : public Host {
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
-    // The slew limits do not apply in two cases. If the loop stalls, the daemon writes safe outputs. After a
-    // failed exchange, the outputs are unknown, so the daemon writes the lower one of the possible values.
+    // The slew limit towards the rest pressure does not apply to safe outputs. It also does not apply while
+    // the daemon ends, during a stall of the loop, in the 0.2 s after a stall, and after a failed exchange,
+    // because the outputs are then unknown.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
     const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
@@ -429,8 +430,8 @@ void World::pause(const Incident& incident) {
   }
 }
 
-/// Returns the rig for a seed. Experiments begin and end at 0 kPa, so their rig must have a rest pressure of
-/// 0 kPa.
+/// Returns the rig and the sequences for a seed. Experiments begin and end at 0 kPa, so their rig must have a
+/// rest pressure of 0 kPa.
 const Library& library_for(const Library& library, std::uint64_t seed, Tool tool) {
   const Library& drawn = library.of(seed);
   const bool experiments = tool == Tool::baseline || tool == Tool::experiment;
