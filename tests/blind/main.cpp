@@ -5,14 +5,14 @@
 //               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
 // DIR receives log_1.csv ... in the project's log format and no other file. With --command, the world plays
-// the commands of these files after its campaign, in the order of the options. It writes its response to the
-// command in the last file as one log. With --campaign, the same finger is driven by different waveforms,
-// with different noise. Z [mm] is added to every reading and D [degC] to every temperature. With --gauge, a
-// simulated operator holds the target of the sensor at the positions in the first column of this file [mm].
-// This check takes place after the commands. The sensor readings are written next to the positions. --runs is
-// the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run variation
-// (variation.h) [0]; --list-runs prints the parameters of the varied runs. With --closed-loop, a controller
-// plays the commands of all logs.
+// the commands of these files after its campaign, in the order of the options. It writes only its response to
+// the last of these commands, to the file of --log. With --campaign, the same finger is driven by different
+// waveforms, with different noise. Z [mm] is added to every reading and D [degC] to every temperature. With
+// --gauge, a simulated operator holds the target of the sensor at the positions in the first column of this
+// file [mm]. This check takes place after the commands. The sensor readings are written next to the
+// positions. --runs is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run
+// variation (variation.h) [0]; --list-runs prints the parameters of the varied runs. With --closed-loop, a
+// controller plays the commands of all logs.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -45,7 +45,7 @@ std::vector<double> triangles(std::mt19937_64& random) {
   Pen pen(out);
   std::uniform_real_distribution<double> unit(0, 1);
   pen.hold(1.5);
-  // The amplitudes increase, so each triangle has a higher peak pressure than all earlier triangles.
+  // Each of these four triangles has a higher peak pressure than the triangles before it.
   for (const double peak : {14.0, 25.0, 36.0, 47.0}) {
     pen.line(peak * (1 + 0.1 * (unit(random) - 0.5)), 1.5);
     pen.line(0, 1.5);

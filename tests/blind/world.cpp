@@ -224,8 +224,8 @@ class Rig {
     moved_mm_ = y;
   }
 
-  // Simulates a person who touches the finger at random times. Each touch changes the displacement by a
-  // random amount, which then decays.
+  // Simulates a person who touches the finger at random times. Each touch changes the reading by a random
+  // amount, which then decays.
   double bumps() {
     if (memory_.campaign_s >= next_bump_s_) {
       next_bump_s_ = memory_.campaign_s + 4 + 10 * uniform_(random_);

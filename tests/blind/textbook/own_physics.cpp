@@ -40,8 +40,8 @@ SettledLoop settled_loop(FingerNumbers numbers) {
   return {Recalibration(place).left_mm(middle), rms(skew)};
 }
 
-// Fits a dead time and a first-order lag to the valve. Returns the RMS [kPa] of the difference between the
-// pressure of the valve and the pressure of the fitted model.
+// Returns the RMS [kPa] of the difference between the pressure of the valve and the command after a dead time
+// `delay_s` and a first-order lag `tau_s`.
 double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& answers, double tau_s,
                     double delay_s) {
   double sum = 0, count = 0;

@@ -24,8 +24,8 @@ void probe_rest() {
   }
 }
 
-// Holds a constant command after a step, and prints the mean and the range of the true pressure between 60 s
-// and 70 s after the step. Some steps rise and others fall.
+// Holds a constant command after a step, and prints the middle and the width of the range of the true
+// pressure between 60 s and 70 s after the step. Some steps rise and others fall.
 void probe_hold() {
   std::puts("seed,command_kpa,pressure_kpa,variation_kpa");
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {

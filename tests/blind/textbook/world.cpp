@@ -246,7 +246,7 @@ class Body {
   double last_ = 0, friction_ = 0, slow_ = 0, crescent_ = 0, speed_ = 0, moved_ = 0, carried_ = 0, seen_ = 0;
 };
 
-// Replaces single readings of the sensor by wrong values.
+// Adds an error of constant size and random sign to single readings of the sensor.
 class WrongSamples {
  public:
   WrongSamples(const Hidden& hidden, std::uint64_t seed) : h_(hidden), random_(seed * 2147483647 + 11) {}
