@@ -30,8 +30,8 @@ void for_every_block(Check&& check) {
   }
 }
 
-/// Returns the model bench_twin with one additional block. The parameters of this block have their default
-/// values.
+/// Returns the model bench_twin. If bench_twin does not contain the block, adds it with the default values of
+/// its parameters.
 Model twin_with(std::size_t type) {
   const Model twin = preset("bench_twin");
   return position_of(twin, type) ? twin : with_block(twin, default_block(type));
@@ -42,7 +42,7 @@ bool is_random(std::size_t type) {
   return type == block_type<SensorNoise>() || type == block_type<Outliers>();
 }
 
-/// Returns surroundings (temperature, supply pressure, time and others) in which every block has an effect.
+/// Returns surroundings (time, supply pressure and temperature) in which every block has an effect.
 Surroundings around(double time_s) {
   return {time_s, 450 + 40 * std::sin(0.3 * time_s), 24 + 3 * std::cos(0.2 * time_s)};
 }

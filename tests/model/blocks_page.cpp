@@ -1,6 +1,6 @@
-// Writes docs/reference/blocks.md from the catalogue.
+// Generates the page docs/reference/blocks.md from the catalogue.
 //   model_blocks_page            prints the page
-//   model_blocks_page --check    exits with 1 if the file in the source tree differs from the page
+//   model_blocks_page --check    exits with 1 if the file in the source tree differs from the generated page
 //   model_blocks_page --write    writes the file
 
 #include <fstream>

@@ -19,10 +19,11 @@
 namespace softgrip::model::testing::catalogue_test {
 namespace {
 
-/// A deprecated name in the catalogue. It belongs to a block type or to a value of a block type.
+/// A deprecated name in the catalogue, either of a block type or of a parameter of a block type.
 struct Deprecated {
   std::size_t type = 0;
-  std::optional<std::size_t> value;  ///< index of the value; nullopt: the deprecated id of the block
+  std::optional<std::size_t>
+      value;  ///< index of the parameter; nullopt: the name is the deprecated id of the block
 
   [[nodiscard]] const BlockDescriptor& block() const { return catalogue()[type]; }
   [[nodiscard]] std::string name() const {
@@ -45,7 +46,8 @@ std::vector<Deprecated> all_deprecated() {
   return all;
 }
 
-/// Returns bench_twin with the block of the deprecated name, at values at which the block has an effect.
+/// Returns bench_twin with the block of the deprecated name. At the parameter values of this block, it has an
+/// effect.
 Model model_with(const Deprecated& deprecated) {
   return with_block(preset("bench_twin"), default_block(deprecated.type, 2));
 }
@@ -56,7 +58,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-/// Returns the beginning of the line of a block or a value in a model file.
+/// Returns the beginning of the line of a block or a parameter in a model file.
 std::string line_of(const Deprecated& deprecated, const std::string& name) {
   return (deprecated.value ? "      " : "  - ") + name + ":";
 }
@@ -108,7 +110,7 @@ TEST_P(DeprecatedName, IsRefusedBesideTheNewNameWithFileAndLine) {
   const std::string text = to_yaml(model);
   const std::string line = line_of(deprecated, deprecated.name());
   const std::size_t at = text.find(line);
-  // The line with the deprecated name follows the line, or the last line of the block, with the new name.
+  // Repeats the parameter, or the complete block, under its deprecated name directly after its last line.
   std::size_t end = text.find('\n', at) + 1;
   std::string added = text.substr(at, end - at);
   if (!deprecated.value) {
@@ -182,7 +184,8 @@ TEST(Catalogue, EveryNameAndDeprecatedNameHasOneMeaning) {
   }
 }
 
-// The repeated parts of no block have a deprecated name, so this test declares such a block type.
+// The catalogue contains no block whose repeated parts have a deprecated name, so this test declares such a
+// block type.
 TEST(Catalogue, DeprecatedNamesOfRepeatedPartsContainTheNumberOfThePart) {
   constexpr std::array parts{
       parameter("gain#_mm", "mm", "a gain", Typical{1}, Within{0, 2}, Scale{1}, Formerly{"size#_mm"})};
@@ -193,7 +196,7 @@ TEST(Catalogue, DeprecatedNamesOfRepeatedPartsContainTheNumberOfThePart) {
   EXPECT_FALSE(block.is_named(1, "size3_mm"));
 }
 
-// Records of earlier versions contain this hash of this model. At that time, the deprecated names were the
+// Recordings of earlier versions contain this hash of this model. At that time, the deprecated names were the
 // only names.
 TEST(Catalogue, NewNamesDoNotChangeTheHashOfAModel) {
   const Outcome outcome = read(R"(name: renamed

@@ -21,7 +21,7 @@ constexpr int most_parameters = 20;
 using Jet = ceres::Jet<double, most_parameters>;
 constexpr double dt = 5e-3;
 
-// Returns surroundings (temperature, supply pressure, time and others) in which every block has an effect.
+// Returns surroundings (time, supply pressure and temperature) in which every block has an effect.
 Surroundings around(double time_s) {
   Surroundings s;
   s.time_s = time_s;
@@ -50,8 +50,8 @@ std::vector<Jet> readings_with_derivatives(const Model& model, SignalName signal
   return y;
 }
 
-// Returns true if the parameter selects a variant or controls random numbers. A fit must not change such a
-// parameter.
+// Returns true if the chain gives no derivative with respect to the parameter, because the parameter is an
+// exponent, controls random numbers or is the step of a quantisation. A fit must not change such a parameter.
 bool has_no_derivative(const std::string& path) {
   return path == "bouc_wen.exponent" || path == "sensor_noise.correlation_time_s" ||
          path == "outliers.probability" || path == "quantisation.step_mm";
@@ -196,8 +196,8 @@ double outside_of_differences(Chain<double>& chain, double p, const Surroundings
 }
 
 TEST(ChainPeek, PeekPredictsTheResultOfStep) {
-  // The models are the actuators of the presets, an actuator with a contact, and an actuator that contains
-  // every block with an implicit inverse.
+  // The test uses only the blocks with an implicit inverse. `all` contains each of these blocks. `smooth`
+  // omits those that change the pressure in the actuator and are not in bench_twin.
   std::vector<Model> models{preset("zhang2025"), preset("bench_twin"),
                             with_block(preset("zhang2025"), {*find_block("contact"), {9.0, 1.5}})};
   Model smooth = preset("bench_twin");

@@ -13,7 +13,7 @@ namespace softgrip::model::testing {
 namespace {
 
 // An initial value problem with the state vector p, h, x1 .. xn. If the valve has no lag, the pressure p
-// equals the command and is not integrated.
+// equals the delayed command and is not integrated.
 struct Problem {
   const Physics& physics;
   double from_s = 0, from_kpa = 0, slope = 0;  // start time, start value and slope of the present linear

@@ -76,8 +76,8 @@ TEST(AsymmetricBoucWen, AllSkewParametersFollowTheDifferentialEquation) {
   }
 }
 
-// The hysteretic state has saturated in one direction. When the pressure changes its direction, the state
-// must decrease, for all parameter values.
+// If a saturated hysteretic state increased after a reversal of the pressure, its magnitude would grow with
+// every cycle.
 TEST(AsymmetricBoucWen, StateStaysBoundedForEveryValidSkew) {
   for (const std::vector<double>& material : materials) {
     for (const double epsilon : {-5.0, 5.0}) {

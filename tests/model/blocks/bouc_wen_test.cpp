@@ -58,7 +58,7 @@ TEST(BoucWen, StepSizeDoesNotMatter) {
 }
 
 TEST(BoucWen, SolvesItsEquation) {
-  // Compares finite differences of the closed-form solution with the differential equation for dh/dp. Omits
+  // Compares finite differences of the hysteretic state h with the differential equation for dh/dp. Omits
   // points near a sign change of h.
   for (const auto& v : materials) {
     Block block = make_material(v);

@@ -15,8 +15,8 @@ namespace {
 using Block = Leak<double>;
 constexpr double atmosphere_kpa = LineLoss<double>::atmosphere_kpa;
 
-/// Returns the mass flow of ISO 6358-1, divided by the conductance. The arguments are absolute pressures. The
-/// critical pressure ratio is 0.5.
+/// Returns the flow of ISO 6358-1 at reference conditions, divided by the conductance. The arguments are
+/// absolute pressures. The critical pressure ratio is 0.5.
 double flow(double from_kpa, double to_kpa) {
   const double ratio = std::max(to_kpa / from_kpa, 0.5);
   return from_kpa * std::sqrt(1 - std::pow((ratio - 0.5) / 0.5, 2));

@@ -56,8 +56,8 @@ TEST(LinearModes, MeanEqualsTheAverageOverShortSegments) {
   }
 }
 
-/// First-order lag in long double. Its functions phi_k(x) = sum of x^j / (j + k)! have no cancellation for
-/// small x, the negative ratio of the duration to the time constant.
+/// First-order lag in long double. It is computed with the functions phi_k(x) = sum of x^j / (j + k)!, where
+/// x is the negative ratio of the duration to the time constant. They have no cancellation for small x.
 struct Lag {
   long double time_constant_s;
   long double value = 0, mean = 0;
@@ -117,7 +117,8 @@ TEST(LinearModes, AStronglyDampedModeEqualsTheDifferenceOfTwoLags) {
   }
 }
 
-// The series for short segments and the closed form agree where the first is replaced by the second.
+// The block uses a series for short segments and the closed form for long segments. Both must give the same
+// response.
 TEST(LinearModes, ShortSegmentsGiveTheResponseOfLongSegments) {
   for (const double damping : {0.05, 0.999, 1.0, 1.001, 7.0}) {
     Block once = make<Block>({0.2, 0.3, damping, 0.4, -0.7}), often = once;

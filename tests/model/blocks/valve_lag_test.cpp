@@ -46,8 +46,8 @@ TEST(ValveLag, OutputPeaksWhereTheInputEqualsTheOutput) {
   const auto out = pass(block, Segment<double>::straight(0.2, 20, 0));
   ASSERT_EQ(out.size(), 2u);
   const double turn = out[0].duration_s;
-  EXPECT_NEAR(out[0].end, 20 - 100 * turn, 1e-12);  // the output of a lag has its maximum where it equals the
-                                                    // input
+  EXPECT_NEAR(out[0].end, 20 - 100 * turn,
+              1e-12);  // the output of a lag has its maximum where output and input are equal
   EXPECT_GT(out[0].end, out[0].begin);
   EXPECT_LT(out[1].end, out[1].begin);
   // Before and after the maximum, the output is lower than at the maximum.
