@@ -11,7 +11,7 @@
 
 #include "base/files.h"
 
-// Tests that a write to a file produces either the complete file or no file.
+// Tests that a failed or interrupted write leaves the old file, or no file if there was none.
 namespace softgrip::file_writing_test {
 namespace {
 
@@ -86,7 +86,7 @@ TEST_F(FileWritingTest, ANewFileHasThePermissionsOfTheUmask) {
 }
 
 /// In a shared folder, another user can create a symbolic link with the name of the result file. The link can
-/// point to a file of the user who runs the test.
+/// point to a file of the user who writes the result. This file must not be overwritten.
 TEST_F(FileWritingTest, WriteFileReplacesALinkAndDoesNotFollowTheLink) {
   const fs::path link = folder_ / "result.csv";
   fs::create_symlink("rig.yaml", link);
@@ -158,7 +158,7 @@ TEST_F(FileWritingTest, AFullDiskLeavesTheOldFile) {
   EXPECT_FALSE(written);
   EXPECT_FALSE(created);
   EXPECT_EQ(text(path_), "old");
-  EXPECT_EQ(count(), 1U) << "the failed write leaves no part of the new file";
+  EXPECT_EQ(count(), 1U) << "a failed write leaves no part of the new file";
 }
 
 TEST_F(FileWritingTest, AProcessThatIsKilledWhileItWritesLeavesTheOldFile) {

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Counts the largest number of threads that are inside visit() at the same time.
+/// Stores the largest number of threads that have been inside visit() at the same time.
 class Crowd {
  public:
   void visit() {

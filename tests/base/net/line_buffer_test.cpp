@@ -88,10 +88,10 @@ TEST(LineBuffer, ExceedsComparesTheLengthOfTheNextLine) {
   EXPECT_FALSE(buffer.exceeds(4));
   buffer.append("\n123456");
   EXPECT_TRUE(buffer.exceeds(3));
-  EXPECT_FALSE(buffer.exceeds(4)) << "the end of the line and the second line do not count";
+  EXPECT_FALSE(buffer.exceeds(4)) << "the line feed and the second line do not count";
   EXPECT_EQ(buffer.next(), "1234");
   EXPECT_TRUE(buffer.exceeds(5));
-  EXPECT_FALSE(buffer.exceeds(6)) << "the first line does not count any more";
+  EXPECT_FALSE(buffer.exceeds(6)) << "only the second line counts, because the first line has been taken";
 }
 
 TEST(LineBuffer, ClearDiscardsAllBytes) {
@@ -124,10 +124,11 @@ TEST(LineBuffer, ReceivesFromADescriptor) {
   EXPECT_EQ(buffer.receive(reader.get(), 3), LineBuffer::Received::bytes);
   EXPECT_EQ(lines_of(buffer), std::vector<std::string>{"a"});
   writer.reset();
-  EXPECT_EQ(buffer.receive(reader.get()), LineBuffer::Received::bytes) << "the end comes after the bytes";
+  EXPECT_EQ(buffer.receive(reader.get()), LineBuffer::Received::bytes)
+      << "the end is reported only after all bytes have been received";
   EXPECT_EQ(lines_of(buffer), std::vector<std::string>{"bcd"});
   EXPECT_EQ(buffer.receive(reader.get()), LineBuffer::Received::end);
-  EXPECT_EQ(buffer.receive(-1), LineBuffer::Received::end) << "a failure of the descriptor";
+  EXPECT_EQ(buffer.receive(-1), LineBuffer::Received::end) << "reading from an invalid descriptor fails";
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST_F(AcceptorTest, PausesAcceptingWhileNoDescriptorIsFree) {
   EXPECT_FALSE(acceptor_.accept(now));
   EXPECT_TRUE(acceptor_.out_of_descriptors());
   EXPECT_FALSE(is_readable(now + Acceptor::retry_pause - 1))
-      << "the waiting client is still in the queue of the listener";
+      << "during the pause, the listener is not watched, although a client waits";
   EXPECT_TRUE(is_readable(now + Acceptor::retry_pause));
   EXPECT_FALSE(acceptor_.accept(now + Acceptor::retry_pause));
   EXPECT_FALSE(is_readable(now + Acceptor::retry_pause))
@@ -94,7 +94,7 @@ TEST_F(AcceptorTest, AcceptsOneClientWithTheSpareDescriptors) {
   EXPECT_TRUE(first);
   EXPECT_TRUE(acceptor_.out_of_descriptors());
   const Descriptor needed{::dup(first.get())};
-  EXPECT_TRUE(needed) << "the request can use the second spare descriptor";
+  EXPECT_TRUE(needed) << "one more descriptor is free for the work that the client requests";
   EXPECT_FALSE(acceptor_.accept(0));
   EXPECT_FALSE(is_readable(0));
   first.reset();
