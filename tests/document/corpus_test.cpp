@@ -1,5 +1,5 @@
-// Passes every file of the fuzz corpus to the parser. The test is a part of every build. No file may crash
-// the parser.
+// Passes every file of the fuzz corpus to the parser. No file may crash the parser. In contrast to the fuzz
+// target, this test is a part of every build.
 
 #include <gtest/gtest.h>
 

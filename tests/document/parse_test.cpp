@@ -61,8 +61,9 @@ TEST(Parse, AnEmptyValueHasALocation) {
   Problems problems;
   const Document document = parse("a.yaml", "a:\n\n# comment below\nb: 1\nc:\n  -\n  - 2\n", problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
-  EXPECT_EQ(value_of(document.root, "a").at.line,
-            3);  // line 3: the comment hides the colon in line 1 from the parser
+  EXPECT_EQ(
+      value_of(document.root, "a").at.line,
+      3);  // the YAML parser gives the empty value the line of the comment (3), not the line of its key (1)
   EXPECT_EQ(value_of(document.root, "c").items[0].at, (Location{6, 3}));
 }
 
@@ -187,7 +188,7 @@ TEST(Parse, SizeDepthAndNodeLimitsAreExact) {
   EXPECT_EQ(problems_of("a: 1\nb: 2\nc: 3\n", bounds), (Lines{"3:1: the document has more than 5 values"}));
 }
 
-/// Calls parse() with `text` on a thread with a small stack.
+/// Calls parse() with `text` on a thread with a small stack, and expects that the text is refused.
 void parse_on_small_stack(const std::string& text) {
   pthread_attr_t attributes;
   ASSERT_EQ(pthread_attr_init(&attributes), 0);

@@ -87,7 +87,7 @@ TEST(Problems, TheCaretIsBelowTheCharacterOfTheColumn) {
   const auto [line, caret] = shown_line(problem_at(1, 10, "größe: 1"));
   EXPECT_EQ(line, "    größe: 1");
   EXPECT_EQ(caret,
-            "           ^");  // column 10 is counted in bytes; the 7 characters before the colon have 9 bytes
+            "           ^");  // columns count bytes; the 7 characters before column 10 have 9 bytes
   const auto [tabbed, below] = shown_line(problem_at(1, 3, "\ta: \x1b[1m"));
   EXPECT_EQ(tabbed, "    \\ta: \\x1b[1m");
   EXPECT_EQ(below, "       ^");

@@ -17,8 +17,8 @@ using softgrip::document::MapReader;
 using softgrip::document::Node;
 using softgrip::document::Problems;
 
-/// Aborts in three cases: a tree exceeds its limits, a map has two equal keys, or a position is outside the
-/// text.
+/// Aborts in three cases: the tree exceeds its limits, two of the first 50 keys of a map are equal, or a line
+/// or column number is below 1.
 void check(const Node& node, int depth, std::size_t& nodes) {
   if (++nodes > softgrip::document::Bounds{}.nodes || depth > softgrip::document::Bounds{}.depth)
     std::abort();
@@ -32,7 +32,7 @@ void check(const Node& node, int depth, std::size_t& nodes) {
   }
 }
 
-/// Reads a number for each of several keys of each map, so that every type of hint occurs.
+/// Calls every getter with a key for each map, so that every type of hint can occur.
 void read(const Document& document, const Node& node, Problems& problems) {
   {
     MapReader reader(document, node, problems, "the map");
