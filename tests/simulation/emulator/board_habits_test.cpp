@@ -175,8 +175,9 @@ TEST(BoardHabits, StrayBytesAreThrownAway) {
   }
 }
 
-/// The board has 16 input and 4 output registers. One request may contain at most 4 registers. The driver
-/// must not divide a value between two requests. It must assign each input to the correct channel.
+/// The board has 8 inputs in 16 registers and 4 outputs in 8 registers. One request may contain at most 4
+/// registers. The driver must not divide a value between two requests. It must assign each input to the
+/// correct channel.
 TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   FaultSpec habit = fault_of(FaultKind::few_registers);
   habit.most = 4;

@@ -55,7 +55,7 @@ TEST(EmulatedBoard, ShowsTheClientCountIfTheMapHasARegister) {
   EmulatedBoard silent(map);
   silent.count_clients(2);
   EXPECT_EQ(silent.answer(0, Bytes{0x04, 0, 30, 0, 1}).pdu, (Bytes{0x84, 2}))
-      << "the requested register does not exist";
+      << "without a register for the number of clients in the board map, the request must be refused";
   for (const std::uint8_t function : {std::uint8_t{3}, std::uint8_t{4}}) {
     map.watchdog.clients = drivers::BoardWatchdog::ClientCount{.function = function, .address = 30};
     EmulatedBoard board(map);

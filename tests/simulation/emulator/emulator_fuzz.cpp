@@ -1,8 +1,6 @@
-// Fuzz target: sends arbitrary bytes to the emulator. Like a client, it divides the bytes into pieces of any
-// size.
+// Fuzz target: sends arbitrary bytes to the emulator. The bytes arrive in pieces of 1 to 32 bytes.
 //
-//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
-//   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024
+//   Command: scripts/fuzz.sh emulator_fuzz 30
 
 #include <algorithm>
 #include <cstdint>

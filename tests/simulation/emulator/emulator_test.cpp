@@ -21,8 +21,8 @@ FaultSpec fault(std::string name, FaultKind kind) {
   return spec;
 }
 
-/// An emulated ADAM-6024 and a client that counts its transactions. The emulator simulates two fingers of the
-/// model bench_twin without noise.
+/// An emulated ADAM-6024 with two fingers of the model bench_twin without noise. All requests have the
+/// transaction id 7.
 class EmulatorTest : public testing::Test {
  protected:
   static EmulatorSettings settings(std::vector<FaultSpec> faults = {}) {
@@ -42,7 +42,7 @@ class EmulatorTest : public testing::Test {
   static Reply ask(Emulator& emulator, Nanoseconds now, Bytes pdu, std::uint8_t unit = 1) {
     return emulator.serve(now, {7, unit, std::move(pdu)});
   }
-  /// Commands the same pressure for both valves. Returns true if the board has confirmed the command.
+  /// Commands the same pressure for both valves. Returns true if the board has responded.
   static bool command(Emulator& emulator, Nanoseconds now, double pressure_kpa) {
     const auto raw = static_cast<std::uint16_t>(pressure_kpa / 100 * 4095);
     Bytes pdu{0x10, 0, 10, 0, 2, 4};

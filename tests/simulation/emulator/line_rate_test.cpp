@@ -27,8 +27,8 @@ struct Rate {
   int exchanges;
 };
 
-/// While an object of this class exists, this thread has real-time priority, and so have the threads that it
-/// starts.
+/// While an object of this class exists, this thread and the threads that it starts run on processor 0 with
+/// real-time priority. If the system does not permit this, granted() returns false.
 class RealTime {
  public:
   RealTime() {

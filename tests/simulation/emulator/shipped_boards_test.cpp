@@ -110,7 +110,7 @@ TEST_P(ShippedBoard, AZeroCommandGivesZeroPressure) {
   ASSERT_TRUE(hold(0, 100ms)) << board_->detail();
   for (const Finger& finger : rig_->stop().fingers()) {
     EXPECT_NEAR(finger.plant().held_command_kpa(), 0, 0.013)
-        << "0 kPa is the raw value 2047.5, which is rounded";
+        << "with festo-pgva, 0 kPa is the raw value 2047.5, which is rounded";
   }
 }
 
