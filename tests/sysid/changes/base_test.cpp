@@ -16,8 +16,8 @@ Base base_of(const std::vector<Log>& healthy) {
   return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
 }
 
-/// Returns the RMS [mm] of the residual that the baseline model leaves in all logs. The mean of each log is
-/// subtracted from its residual first.
+/// Returns the RMS [mm] of the residual that the baseline model leaves in all logs. The mean residual of each
+/// log is subtracted first.
 double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   const std::vector<Record> records = make_records(logs, {});
   const std::vector<std::vector<double>> left = residuals_of(base, records);

@@ -48,7 +48,7 @@ TEST_F(ChangeIntervals, CoverTheTrueDelayAndMatchTheEstimateScatter) {
   RecordProperty("held", held);
   EXPECT_GE(held, 25) << "number of intervals that contain the true delay, of "
                       << draws;  // 25 of 30: with 95 % coverage, fewer than 25 intervals contain the true
-                                 // delay in 1 of 5000 tests
+                                 // delay in 1 of 300 tests
   EXPECT_GT(widths, 0.6 * 2 * 1.96 * scatter);
   EXPECT_LT(widths, 2.5 * 2 * 1.96 * scatter);
 }

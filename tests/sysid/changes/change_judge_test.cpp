@@ -99,8 +99,8 @@ std::vector<Log> logs_with_steps(const Base& base) {
   return logs;
 }
 
-/// A model that predicts the healthy logs equally well disagrees about the steps, so the error of the steps
-/// is no evidence of a change.
+/// An alternative model predicts the healthy logs equally well but the steps differently. An error during the
+/// steps is therefore no evidence of a change.
 TEST_F(ChangeJudge, AnErrorUnderAnUnfamiliarInputIsNoChange) {
   const HealthyModel right = base_;
   const std::vector<Log> steps = logs_with_steps(base_);
@@ -117,7 +117,7 @@ TEST_F(ChangeJudge, AnErrorUnderAnUnfamiliarInputIsNoChange) {
   EXPECT_EQ(change_sentence(diagnosis).find("Unchanged:"), std::string::npos) << change_sentence(diagnosis);
 }
 
-/// The permitted error for an input like the healthy inputs does not depend on the alternatives to the model.
+/// The permitted error for an input like the healthy inputs does not depend on alternative models.
 TEST_F(ChangeJudge, AChangeUnderAFamiliarInputIsFoundDespiteAlternatives) {
   const HealthyModel right = base_;
   base_.alternatives = {};
@@ -141,10 +141,12 @@ TEST_F(ChangeJudge, ModelsDisagreeMoreOnlyUnderAnUnfamiliarInput) {
   EXPECT_LT(added_disagreement(base_, ramps).loss, 1e-3);
 }
 
-/// A disagreement that also occurs about the healthy logs is no sign of an unfamiliar input.
+/// A difference between the predictions of two models that also occurs for the healthy logs is no sign of an
+/// unfamiliar input.
 TEST_F(ChangeJudge, ADisagreementAboutHealthyLogsIsSubtracted) {
   Base other = base_;
-  other.filter_weights(2) += 0.5;  // two lags of the command: the predictions of ramps differ
+  // The two columns contain different lags of the command, so the models predict ramps differently.
+  other.filter_weights(2) += 0.5;
   other.filter_weights(4) -= 0.5;
   const auto own = residuals_of(base_, base_.records), others = residuals_of(other, base_.records);
   for (std::size_t r = 0; r < own.size(); ++r) {

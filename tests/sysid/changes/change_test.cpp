@@ -159,7 +159,7 @@ TEST(Change, WithOneHealthyLogASmallGainDifferenceIsNoChange) {
     EXPECT_TRUE(d) << d.error();
     return d->verdict != ChangeVerdict::unchanged;
   };
-  EXPECT_FALSE(is_changed(0.2 * 0.9555));  // reported as ageing if only 0.8 % of the gain were free
+  EXPECT_FALSE(is_changed(0.2 * 0.9555));  // would be ageing if the permitted difference were only 0.8 %
   EXPECT_TRUE(is_changed(0.2 * 0.94));
 }
 

@@ -15,7 +15,7 @@ TEST(EffectFit, TheStepOfAParameterStaysWithinItsBounds) {
   fitted.numbers = {2};
   EXPECT_LT(small_move(fitted, 0), 0) << "the parameter is at its upper bound";
   fitted.numbers = {0};
-  EXPECT_GT(small_move(fitted, 0), 0) << "the step does not vanish with the parameter";
+  EXPECT_GT(small_move(fitted, 0), 0) << "the step is not 0 for a parameter value of 0";
 }
 
 }  // namespace

@@ -18,16 +18,16 @@ struct Finger {
   double gain = 0.2;     ///< gain of the finger, mm/kPa
   double stop_mm = 1e9;  ///< largest displacement [mm]
   double zero_mm = 0;
-  double lost_kpa_per_s = 0;  ///< rate at which pressure is lost while the command is constant [kPa/s]; the
-                              ///< loss ends at 1.5 kPa
+  double lost_kpa_per_s = 0;  ///< rate at which pressure is lost at a constant command of 60 kPa [kPa/s];
+                              ///< the rate is proportional to the command, and the loss is at most 1.5 kPa
   double delay_s = 0;
   double valve_lag_s = 0;
   double per_c = 0;  ///< relative change of the gain per degree above 15 degC
   bool with_temperature = false;
   double bend_per_mm = 0;  ///< coefficient of stiffening with the displacement [1/mm]; a displacement of 12
                            ///< mm stays unchanged
-  double crescent_mm = 0;  ///< width of a hysteresis loop [mm]; loading follows a parabola and unloading
-                           ///< follows a line
+  double crescent_mm = 0;  ///< largest width of a hysteresis loop [mm]; loading follows a parabola and
+                           ///< unloading follows a line
   double drift_mm = 0;     ///< amplitude of a drift of the zero offset [mm] with a period of about 15 s
 };
 

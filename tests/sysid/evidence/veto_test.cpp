@@ -25,7 +25,7 @@ TEST(Veto, EachUnmetConditionRejectsTheClaim) {
   EXPECT_EQ(veto_of(claim), Veto::size_beyond_range);
   claim.size = Interval{8, 12};
   EXPECT_EQ(veto_of(claim), Veto::none)
-      << "an effect with a size within the range of the signal must be accepted";
+      << "a size whose interval overlaps the range of the signal must be accepted";
   claim.size.reset();
   EXPECT_EQ(veto_of(claim), Veto::none);
   claim = sound();

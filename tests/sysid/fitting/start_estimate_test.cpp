@@ -25,7 +25,7 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.05, rate_hz = 50;
 
-/// Returns a finger with play operators and a dead time. Its creep has time constants over two decades.
+/// Returns a finger with play operators and a dead time. Its creep has time constants of 0.3 s and 10 s.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -154,8 +154,8 @@ TEST(EstimatedStart, CyclicHysteresisIsPredictedFromAMidCycleStart) {
   EXPECT_LT(error_mm(finger, record, start), 0.15 * span_mm);
 }
 
-/// A model without the delay has an error of at least 1 mm on a ramp. The estimate must not explain this
-/// error by another start state.
+/// A model without the delay has an error on a ramp. The estimate must not explain this error by another
+/// start state.
 TEST(EstimatedStart, ModelErrorIsNotAttributedToTheStart) {
   const model::Model finger = loaded("bench_twin");
   model::Model without_delay = finger;

@@ -13,8 +13,7 @@ struct GripWorld {
   double gain = 1;
   double zero_mm = 0;
   double lag_s = 0;
-  double extra_creep_mm = 0;  ///< additional displacement [mm] that develops during the last second of the
-                              ///< run
+  double extra_creep_mm = 0;  ///< decrease of the displacement [mm] during the last second of the run
   double loop_mm = 0;         ///< additional displacement [mm] while the pressure falls
   double loss_kpa = 0;
   double leak_kpa_per_s = 0;

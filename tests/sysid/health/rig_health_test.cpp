@@ -70,8 +70,8 @@ struct Rig {
   }
 };
 
-/// Returns a rig whose left finger changes on day `from`. From this day on, the gain indicator of the left
-/// finger is changed by `by` [mm].
+/// Returns a rig whose left finger changes from day `from` on. From this day on, the gain indicator of the
+/// left finger changes by `by` [mm] per day.
 Rig softening(unsigned seed, double by, int from) {
   Rig rig;
   rig.seed = seed;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double least = 1e-9;
 
-/// Generates values that change by 0.1 per °C and have a standard deviation of 0.05.
+/// Generates values that change by 0.1 per °C and scatter around this line with a standard deviation of 0.05.
 class Warm {
  public:
   explicit Warm(unsigned seed) : random_(seed) {}

@@ -62,7 +62,8 @@ class FoundRuns : public ::testing::Test {
   FoundRuns(FoundRuns&&) = delete;
   FoundRuns& operator=(FoundRuns&&) = delete;
 
-  /// Writes a recording whose run.json contains this text. Returns the folder of the recording.
+  /// Writes a recording whose run.json contains this text. Without a text, writes no run.json. Returns the
+  /// folder of the recording.
   [[nodiscard]] std::string run(const std::string& name, const std::string& story) const {
     const std::filesystem::path path = folder / name;
     std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm\n";

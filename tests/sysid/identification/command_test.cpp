@@ -148,7 +148,8 @@ TEST_F(Command, ValidateReportsEachLogAboveThePermittedError) {
   EXPECT_NE(read("out.txt").find("FAILED: above"), std::string::npos) << read("out.txt");
   for (const char* text : {"out.txt", "out/validate.json", "out/report.html"})
     EXPECT_EQ(read(text).find("nan"), std::string::npos)
-        << text << ": a log that only holds a pressure has no cycles for the settling time";
+        << text
+        << ": a log that only holds a pressure has no settled cycles, and this must not be printed as nan";
 }
 
 TEST_F(Command, WarnsOfImplausibleUnitsSignsAndColumns) {
@@ -179,8 +180,7 @@ TEST_F(Command, WarnsOfImplausibleUnitsSignsAndColumns) {
               std::string::npos);
 }
 
-/// Returns a part of the log. The part begins at the last rest before the highest pressure and ends at the
-/// highest pressure.
+/// Returns the rise of the command to its highest pressure as a separate log.
 Log loading() {
   const Log whole = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   const std::vector<double>& kpa = whole.pressure_command_kpa;
@@ -255,8 +255,8 @@ TEST_F(Command, ErrorCode9999IsNotTreatedAsAUnitError) {
   EXPECT_NE(read("err.txt").find("--missing 9999"), std::string::npos) << read("err.txt");
 }
 
-/// The log is from a pneumatic muscle with pressures in MPa, so the displacement per unit of pressure is very
-/// large. The log is accepted, and a warning names the unit.
+/// With a factor of 1e-3, the pressures are in MPa, and the log is accepted. With a factor of 1e-6, the log
+/// is refused. In both cases, a message names the units that the values may have.
 TEST_F(Command, WrongPressureUnitIsNamedEvenIfTheLogIsRefused) {
   const auto identified = [&](double factor, const char* out) {
     Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);

@@ -119,8 +119,8 @@ TEST(Score, ScaledReadingsAreNoDivergence) {
     return score.diverges;
   };
   for (const double factor : {1.0, -1.0, 1e-3, 0.1, 1e3}) EXPECT_FALSE(diverges_at(factor, 0)) << factor;
-  EXPECT_TRUE(diverges_at(0, 0.1));  // the model diverges: its readings alternate and do not follow the
-                                     // command
+  EXPECT_TRUE(diverges_at(0, 0.1));  // the readings alternate by 0.1 mm and do not follow the command, so the
+                                     // prediction diverges from them
 }
 
 TEST(Validate, EstimatesTheOffsetOfLogsThatStartAtRest) {

@@ -68,8 +68,8 @@ TEST(TdmsTable, ReadsNumbersByTheirTypes) {
 }
 
 TEST(TdmsTable, MetadataApplyUntilChanged) {
-  // The second segment has no metadata. The third segment changes the number of values of one channel. All
-  // other metadata stay unchanged.
+  // The second segment has no metadata. The third segment changes the number of values of both channels from
+  // 2 to 1. All other metadata stay unchanged.
   const std::string values =
       bytes_of(3.5) + bytes_of(4.5) + bytes_of(std::int32_t{9}) + bytes_of(std::int32_t{10});
   const std::string change =

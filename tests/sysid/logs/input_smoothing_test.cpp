@@ -12,7 +12,7 @@ struct Signal {
   std::vector<double> time_s, truth, measured;
 };
 
-/// Returns triangles with holds, at the irregular sample times that the pressure of a regulator can have.
+/// Returns triangles with holds at irregular sample times, like those of the pressure of a regulator.
 Signal triangles(double noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

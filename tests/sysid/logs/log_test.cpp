@@ -34,7 +34,7 @@ std::string good_text() {
   return format_log(good_log());
 }
 
-/// Returns the valid log with another text in line `number`. The first line has the number 1.
+/// Returns the text of the valid log, with line `number` replaced by `line`. The first line has the number 1.
 std::string with_line(int number, const std::string& line) {
   std::string text = good_text();
   std::size_t begin = 0;

@@ -29,7 +29,7 @@ Record parabola(double noise_mm) {
   return record;
 }
 
-/// Returns a record with the given command, sampled at 100 Hz and without readings.
+/// Returns a record with the given command, sampled at 100 Hz. All readings are 0 mm.
 Record commanded(const std::vector<double>& drive_kpa) {
   Record record;
   for (std::size_t i = 0; i < drive_kpa.size(); ++i) {

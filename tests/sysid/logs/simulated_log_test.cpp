@@ -85,7 +85,7 @@ TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
   const model::Model model = twin();
   Log regular = sampled_signal(model::SignalName::tp2, 1000);
   simulate(model, {}, regular);
-  // Keep samples at increasing distances. The command must remain linear between the kept samples.
+  // Keep samples at unequal distances. The command must remain linear between the kept samples.
   Log irregular;
   for (std::size_t i = 0; i < regular.size(); i += 1 + i % 3) {
     irregular.time_s.push_back(regular.time_s[i]);

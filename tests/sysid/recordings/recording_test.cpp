@@ -43,7 +43,7 @@ TEST_F(RecordingTest, InvalidRecordingIsRefused) {
 TEST_F(RecordingTest, NamedPipeIsNotWaitedFor) {
   write("run.csv", csv);
   ASSERT_EQ(::mkfifo((folder / "run.json").c_str(), 0600), 0);
-  EXPECT_TRUE(read()) << "a recording without run.json is still a recording";
+  EXPECT_TRUE(read()) << "a run.json that is a pipe is ignored";
   std::filesystem::remove(folder / "run.csv");
   ASSERT_EQ(::mkfifo((folder / "run.csv").c_str(), 0600), 0);
   const auto recording = read();

@@ -36,7 +36,7 @@ namespace {
 using model::SignalName;
 
 /// Returns a finger with play operators, a nonlinear gain, and creep with three time constants from 0.3 s to
-/// 27 s. The valve vents more slowly than it fills. The thresholds and time constants of the finger are not
+/// 27.5 s. The valve vents more slowly than it fills. The thresholds and time constants of the finger are not
 /// on the grid of values that the fit uses.
 model::Model play_finger() {
   model::Model m;

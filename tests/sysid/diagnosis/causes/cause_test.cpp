@@ -25,7 +25,7 @@ Scales typical_scales() {
   return s;
 }
 
-/// Returns bench_twin with the given block in place of its valve.
+/// Returns bench_twin without its valve blocks, with the given block added.
 model::Model with(const model::BlockSpec& block) {
   const model::Model twin = model::testing::preset("bench_twin");
   return model::with_block(

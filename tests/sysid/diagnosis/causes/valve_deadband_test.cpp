@@ -8,8 +8,8 @@
 namespace softgrip::sysid::valve_deadband_test {
 namespace {
 
-// The valve sticks and jumps. For every width of its dead band, one start value must be so close to this
-// width that a fit from there finds the jumps.
+// The valve sticks and jumps. For every stick band, one start value must be so close that the number of jumps
+// up to the largest pressure differs by at most 0.51. A fit from this start value then finds the jumps.
 TEST(ValveDeadband, EveryStickBandHasACloseStartValue) {
   Scales scales;
   scales.largest_kpa = 40;

@@ -21,7 +21,8 @@ TEST(ReportConditions, EachSignificantConditionHasAChart) {
   diagnosis.evidence.emplace();
   diagnosis.evidence->recalibrated.conditions = {dependence_on("rate"), dependence_on("dwell"),
                                                  dependence_on("since_turn")};
-  EXPECT_EQ(conditions_figure(diagnosis).charts.size(), 2U) << "two charts are side by side";
+  EXPECT_EQ(conditions_figure(diagnosis).charts.size(), 2U)
+      << "a row has at most two charts, so three charts need two rows";
   diagnosis.evidence->recalibrated.conditions[1].clear = false;
   const Figure figure = conditions_figure(diagnosis);
   ASSERT_EQ(figure.charts.size(), 1U);

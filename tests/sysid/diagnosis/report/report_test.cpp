@@ -39,7 +39,7 @@ NamedCause named(const char* id, double gain_mm2) {
 }
 
 /// Returns a diagnosis that names a lag.
-/// @param given  given model; bench_twin is this model extended by the lag.
+/// @param given  given model. The extended model is bench_twin, which also contains a delay and a lag.
 Diagnosis a_diagnosis(const model::Model& given) {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;

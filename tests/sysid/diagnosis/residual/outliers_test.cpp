@@ -83,9 +83,9 @@ TEST(Outliers, SystematicResidualsAreNoOutliers) {
          const double since = std::fmod(t, 5.0);
          return 3 * std::exp(-6 * since) * std::sin(2 * std::numbers::pi * 5 * since);
        }},
-      {"knocks", [](double t) { return 1.5 * std::exp(-std::fmod(t, 7.0)); }},
-      {"staircase", [](double t) { return std::fmod(t, 0.11) * 10; }},
-      {"fine staircase", [](double t) { return std::fmod(t, 0.047) * 20; }}};
+      {"jumps that decay", [](double t) { return 1.5 * std::exp(-std::fmod(t, 7.0)); }},
+      {"sawtooth", [](double t) { return std::fmod(t, 0.11) * 10; }},
+      {"fine sawtooth", [](double t) { return std::fmod(t, 0.047) * 20; }}};
   for (const auto& [name, structure] : structures) {
     const OutlierEvidence evidence = found_in(plus(noise, structure));
     EXPECT_LE(evidence.count, evidence.readings / 1000) << name;

@@ -138,8 +138,8 @@ TEST(StickSlip, RandomJumpDistancesAreNoStickSlip) {
   EXPECT_FALSE(find_stick_slip(records, behind(records), noise_mm, 2));
 }
 
-// Returns 80 jump distances of a valve with a dead band of 1 kPa. Each distance has an error of 1 %, and
-// every fifth distance is too short.
+// Returns 80 jump distances of a valve with a stick band of 1 kPa. Four of five distances have a random error
+// of 1 %. Every fifth distance is 3 % to 30 % too short.
 std::vector<double> partly_short(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> read(1.0, 0.01);

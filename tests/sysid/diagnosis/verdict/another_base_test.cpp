@@ -52,15 +52,14 @@ TEST(AnotherShape, SufficesOnlyWithSimilarLossAndWithoutAsymmetry) {
   EXPECT_TRUE(another_shape_will_do(base, selected));
   base.losses.assign(10, 1.3 * 0.04);
   EXPECT_FALSE(another_shape_will_do(base, selected))
-      << "the unexplained error of the alternative structure must be clearly larger than that of the given "
-         "structure";
+      << "the loss of the alternative structure is 30 % larger, so this structure does not suffice";
   base.losses = selected;
   base.named.push_back(named("asymmetric_hysteresis"));
   EXPECT_FALSE(another_shape_will_do(base, selected))
-      << "the alternative structure must also contain the asymmetric loop";
+      << "the alternative structure also needs an asymmetric loop";
   base.named = {named("slow_creep")};
   EXPECT_FALSE(another_shape_will_do(base, selected))
-      << "the hysteresis loops of the alternative structure must equal those of the given structure";
+      << "the alternative structure has no other shape of the hysteresis loops";
 }
 
 TEST(AnotherShape, IsAddedOnceAndOnlyToTheAsymmetricLoop) {

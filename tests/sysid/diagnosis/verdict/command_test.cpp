@@ -1,6 +1,6 @@
-// Runs softgrip diagnose with the arguments that a user would give. In one test, the given model lacks a
-// delay and a lag. In another test, the logs contain too little information for a diagnosis. These logs are
-// computed with separate formulas.
+// Runs softgrip diagnose with the arguments that a user would give. The given model lacks a delay and a lag,
+// the finger stiffens, or the logs contain too little information for a diagnosis. The logs with too little
+// information are computed with separate formulas.
 
 #include <algorithm>
 #include <cmath>

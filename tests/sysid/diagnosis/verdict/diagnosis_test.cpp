@@ -38,7 +38,7 @@ TEST(Diagnosis, SmallResidualStartsNoSearchForAnotherStructure) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     logs.push_back(simulated(truth, signal, 25, noise_mm, 17));
-    // Adds an oscillation that no cause of the registry describes.
+    // Adds an error that oscillates with the displacement. No cause of the registry describes this error.
     for (double& y : logs.back().displacement_mm)
       y += 0.9 * noise_mm * std::sin(2 * std::numbers::pi * y / 5);
   }

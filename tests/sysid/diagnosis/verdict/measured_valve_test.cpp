@@ -33,8 +33,8 @@ Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   return log;
 }
 
-/// Returns the index of the block that contains a sample. Samples after the last complete block belong to the
-/// last block.
+/// Returns the index of the block that contains a sample. The log is one sampling interval shorter than a
+/// whole number of blocks, so the samples of its incomplete last block belong to the block before.
 std::size_t block_of(const Log& log, std::size_t sample) {
   return std::min(sample / block_samples, log.size() / block_samples - 2);
 }
@@ -59,8 +59,8 @@ TEST(MeasuredValve, HeldOutLossComesFromAFitToTheOtherBlocks) {
   const MeasuredValve valve(logs, false);
   const BlockLosses losses = valve.held_out_losses({}, valve.fit({}, {ValveStage{}}));
   ASSERT_EQ(losses.size(), 7U);
-  // The first block is left out. The simulation of the valve starts at the first measured pressure. The model
-  // then applies the gain and the zero offset of the sensor to this pressure a second time.
+  // The first block is not compared. The simulation of the valve starts at the first measured pressure. The
+  // model then applies the gain and the zero offset of the sensor to this pressure a second time.
   for (std::size_t block = 1; block < 6; ++block) {
     const Line line = line_through(logs[0], block % 2 == 1);
     double sum_kpa2 = 0;

@@ -32,7 +32,7 @@ TEST(BlockNumbers, OnlyDeterminedParametersHaveIntervals) {
   const model::BlockSpec& real = truth.blocks[*model::position_of(truth, creep)];
   ASSERT_EQ(numbers.size(), real.values.size());
   EXPECT_EQ(numbers[0].name, "k0_kpa_per_mm");
-  EXPECT_FALSE(numbers[0].has_interval) << "alpha and k0 enter only as their sum";
+  EXPECT_FALSE(numbers[0].has_interval) << "only the sum alpha + 1/k0 affects the prediction";
   for (std::size_t i = 1; i < numbers.size(); ++i) {
     ASSERT_TRUE(numbers[i].has_interval) << numbers[i].name;
     EXPECT_LT(numbers[i].ci95.lower, numbers[i].value);

@@ -38,8 +38,8 @@ struct OwnValve {
   double scale = 1;  ///< scale factor of the pressure sensor
 };
 
-/// Returns the mass flow divided by the conductance, according to ISO 6358-1 with a critical pressure ratio
-/// of 0.3. The arguments are absolute pressures [kPa].
+/// Returns the flow of ISO 6358-1 at reference conditions, divided by the conductance, for a critical
+/// pressure ratio of 0.3. The arguments are absolute pressures [kPa].
 double flow(double from_kpa, double to_kpa) {
   const double ratio = std::max(to_kpa / from_kpa, 0.3);
   return from_kpa * std::sqrt(1 - std::pow((ratio - 0.3) / 0.7, 2));
