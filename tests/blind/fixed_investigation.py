@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Runs worlds with fixed seeds whose logs are ambiguous. `softgrip investigate` must find the true cause of each world.
+"""Runs worlds with fixed seeds. `softgrip investigate` must find the true cause of each world.
 
     fixed_investigation.py --build BUILD CAUSE[+CAUSE]:STRENGTH:SEED:EXPERIMENT ...
 
 EXPERIMENT is the experiment that must separate the true cause from the others, or `none` if the logs alone must do so.
-The exit code is 0 if the true cause of every world is found.
+The exit code is 0 if the true cause of every world is found in this way.
 """
 import argparse
 import sys

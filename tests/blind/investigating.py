@@ -1,5 +1,5 @@
-"""Lets `softgrip investigate` play experiments and a gauge check on a simulated world, until only one cause
-remains."""
+"""Runs `softgrip investigate` on a simulated world. The program plays experiments and a gauge check to separate the
+causes that fit the logs."""
 import json
 import pathlib
 import shlex
@@ -25,9 +25,9 @@ def outcome_of(hidden, step):
 
 
 def investigate_world(build, folder, world, gauge=True):
-    """Investigates a simulated world. The result contains `before` and `outcome`, the judgements (judging.judge) of
-    the first and of the last verdict. It also contains `resolved_by`, the experiment after which the true cause was
-    the only cause in the verdict."""
+    """Investigates a simulated world. In the result, `before` is the judgement (judging.judge) of the first verdict,
+    and `outcome` is the judgement of the last verdict. If `before` is not ambiguous_right, `outcome` is
+    not_ambiguous. If `outcome` is right, `resolved_by` is the last experiment, otherwise None."""
     build = pathlib.Path(build).resolve()
     with tempfile.TemporaryDirectory(dir=folder) as name:
         work = pathlib.Path(name)

@@ -49,12 +49,16 @@ def is_outside(cause):
 def judge(hidden, diagnosis):
     """Returns the judgement of a diagnosis. `hidden` contains the ids of the effects that the world really has:
 
-    right            the verdict is correct, and no wrong cause is reported
-    ambiguous_right  the verdict is ambiguous, and the true causes are among the listed causes
-    partly           some of several hidden causes are reported, and no wrong cause
+    right            the verdict is correct, and exactly the hidden causes are reported
+    ambiguous_right  all hidden causes are reported or are alternatives of reported causes, and no wrong cause is
+                     reported, but the conditions of `right` are not met
+    partly           only some of several hidden causes are reported or are alternatives, and no wrong cause is reported
     missed           no cause is reported although an effect is hidden
     unexplained      no effect is hidden, but the verdict is that an error remains unexplained
-    wrong            a cause is reported that is not hidden
+    wrong            a cause is reported although neither this cause nor one of its alternatives is hidden
+
+    If all hidden effects are outside the catalogue of causes, the judgement is also right if the verdict is
+    unexplained, or if only causes of STRUCTURE_OF are reported.
     """
     verdict = diagnosis["verdict"]
     named = [cause["id"] for cause in diagnosis["causes"]]
@@ -80,8 +84,9 @@ def judge(hidden, diagnosis):
 
 
 def covered(hidden, truth, diagnosis):
-    """Compares each parameter that has an interval with its true value, if the world has this parameter. Returns True
-    for a parameter if the interval covers the true value, otherwise False."""
+    """Compares the parameters of the hidden causes that are reported with their true values. Only parameters with an
+    interval and an entry in SAME_MEANING are compared. Returns {parameter: True if the interval covers the true value,
+    otherwise False}."""
     found = {}
     for cause in diagnosis["causes"]:
         if cause["id"] not in hidden:

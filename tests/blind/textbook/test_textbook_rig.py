@@ -62,9 +62,9 @@ class TextbookRig(unittest.TestCase):
         self.assertGreater(displacement_mm[0], 3)
         self.assertAlmostEqual(displacement_mm[1], 0, delta=0.1)
         vented = self.master.stay([0, 3], 2.0)
-        # The tolerance is large, because the effects of creep and hysteresis disappear slowly.
+        # The limit is large, because the hysteresis remains and the creep disappears slowly.
         self.assertLess(5 * vented[0] - 5, displacement_mm[0] / 2)
-        # Both fingers have the same parameters, so they must have the same displacement at the same pressure.
+        # Both fingers have the same parameters, so the same command must cause the same displacement.
         self.assertAlmostEqual(5 * vented[1] - 5, displacement_mm[0], delta=0.1)
 
     def test_outputs_are_read_back_one_exchange_later(self):

@@ -87,7 +87,7 @@ class Finger(unittest.TestCase):
         width, envelope, span_mm = (rows[0][name] for name in ("width", "envelope", "span_mm"))
         count = 120
         # Each relay switches on at the pressure `on` and off at the pressure `off`. The weight of a relay is 2 (1 +
-        # envelope off).
+        # envelope off), or half of it if `on` equals `off`.
         relays = [[(i + 0.5) / count, (j + 0.5) / count, False] for i in range(count) for j in range(i + 1)]
         half = [0.5 if on == off else 1 for on, off, _ in relays]
 

@@ -95,8 +95,8 @@ def given_model(build, work, world, threads):
 
 
 def held_out(build, logs, work, threads):
-    """Identifies a model from the logs. Returns the held-out error of the model divided by the noise, and the
-    description of the model structure."""
+    """Identifies a model from the logs. Returns its held-out error divided by the noise, the description of its
+    structure, and the duration of the identification. Returns {} if the program fails."""
     report = identified(build, logs, work / "identified", threads)
     if report is None:
         return {}
