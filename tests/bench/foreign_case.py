@@ -67,7 +67,7 @@ class ForeignCase(unittest.TestCase):
         return str(caught.exception).replace(f"{self.data}/", "").replace(f"{self.folder}/", "")
 
     def assert_log(self, log, samples=SAMPLES):
-        """Asserts that the log has the samples that put_plain() writes."""
+        """Asserts that the log consists of the first `samples` samples that put_plain() writes."""
         self.assertEqual(len(log.time_s), samples)
         for i in range(samples):
             self.assertAlmostEqual(log.time_s[i], 0.1 * i, 6)

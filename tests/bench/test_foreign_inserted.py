@@ -1,5 +1,5 @@
 """Tests bench/foreign/insert_effects.py, which adds simulated effects to the readings of real runs. Also tests the
-results table of the data sets."""
+data set that the program writes."""
 import unittest
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Tests bench/foreign/log_reading.py with valid and broken logs from other sources."""
+"""Tests bench/foreign/log_reading.py with valid and broken logs in formats of other programs."""
 import math
 
 from foreign_case import SAMPLES, ForeignCase, kpa, log_text, mm
