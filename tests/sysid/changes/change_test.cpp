@@ -235,7 +235,7 @@ TEST(Change, SaturationJustBelowTheLargestReadingIsFound) {
     largest_mm =
         std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
   // The limit of the sensor is 0.25 mm below the largest reading. The first start value of the search is
-  // computed from the error. It is larger than all readings.
+  // computed from the error, and is larger than all readings.
   const double end_mm = largest_mm - 0.25;
   const ChangeDiagnosis d = changed({.stop_mm = end_mm});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);

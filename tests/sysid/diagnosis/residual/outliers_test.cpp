@@ -70,8 +70,7 @@ TEST(Outliers, NoiseContainsNoOutliers) {
 }
 
 // A systematic residual must not count as outliers, even if it is large. Examples are oscillations of any
-// frequency, impacts, and a sawtooth. By chance, up to one in a thousand corners of the sawtooth may look
-// isolated.
+// frequency, jumps that decay, and a sawtooth. By chance, up to one in a thousand readings may look isolated.
 TEST(Outliers, SystematicResidualsAreNoOutliers) {
   const ByRecord noise = noise_for(known_campaign(2), noise_mm, 0, 7);
   const std::vector<std::pair<const char*, double (*)(double)>> structures{

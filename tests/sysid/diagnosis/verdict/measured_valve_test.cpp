@@ -149,8 +149,8 @@ TEST(FindLostPressure, IsAbsentForAConstantOffset) {
 }
 
 // The measured pressure does not exceed 52 kPa, even if the command does. A scale error of the pressure
-// sensor explains half of the difference. A leak explains less of it, because its curve bends in the opposite
-// direction. Therefore no leak may be reported.
+// sensor explains half of the difference. A leak explains less, because it bends the curve of pressure over
+// command in the opposite direction. Therefore no leak may be reported.
 TEST(FindLostPressure, IsAbsentForAPressureLimit) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);
