@@ -297,9 +297,8 @@ class World final : public Host {
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
-    // The slew limit towards the rest pressure does not apply to safe outputs. It also does not apply while
-    // the daemon ends, during a stall of the loop, in the 0.2 s after a stall, and after a failed exchange,
-    // because the outputs are then unknown.
+    // The slew limit towards the rest pressure does not apply to safe outputs, while the daemon ends, during
+    // a stall of the loop and the 0.2 s after it, and after a failed exchange.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
     const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
