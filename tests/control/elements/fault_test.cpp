@@ -43,7 +43,7 @@ TEST(Faults, CodesAreStable) {
     EXPECT_FALSE(info.meaning.empty() || info.cause.empty() || info.remedy.empty() || info.bound.empty());
   }
   EXPECT_EQ(info_of(FaultCode::none).id, "F000");
-  EXPECT_LE(all_faults().size(), 32U) << "the supervisor has one bit for each fault";
+  EXPECT_LE(all_faults().size(), 32U) << "a fault is one bit of a 32-bit word in the supervisor";
 }
 
 TEST(Refusals, HaveIdAndName) {

@@ -118,7 +118,8 @@ model::Model perturbed(double share, std::uint64_t seed) {
   return model;
 }
 
-/// Returns the RMS error of the model while free fingers follow the reference signal tp1.
+/// Returns the RMS residual [mm] of the left finger while the pressure signal tp1 moves the finger without
+/// contact.
 double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   const PreparedSequence tp1 =
       sequence_of("name: x\nsteps:\n  - pressure: {signal: tp1, scale: 0.9}\n", settings);

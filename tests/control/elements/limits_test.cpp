@@ -110,7 +110,7 @@ TEST(Limits, ACeilingNeverPullsTheCommandBelowRest) {
   EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0)
       << "the command falls to the rest pressure, but not below it";
   EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0)
-      << "the return to the rest pressure is not limited";
+      << "a ceiling below the rest pressure does not stop the return to the rest pressure";
   EXPECT_EQ(limit(vacuum, 0, -30, 1, -20).command_kpa, 0);
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }

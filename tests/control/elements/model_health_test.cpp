@@ -12,8 +12,7 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-// Returns the settings of these tests. The function sets all values, so that a change of a default value does
-// not change the results.
+// Returns settings with short intervals, so that the tests need few ticks.
 ModelHealthSettings short_intervals() {
   ModelHealthSettings settings;
   settings.model_error_mm = 0.2;
@@ -110,8 +109,8 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
 // settings.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
   ModelHealthSettings settings = short_intervals();
-  settings.false_alarm_interval_s = 100;  // 200 correlation intervals: short enough that the test can count
-                                          // many false alarms
+  settings.false_alarm_interval_s = 100;  // 200 intervals of interval_s: short enough that the test can
+                                          // count many false alarms
   settings.unfit_mm = 1e9;
   double seconds = 0;
   constexpr int runs = 1000;
@@ -190,8 +189,8 @@ TEST(ModelHealth, IntervalsWithTooFewReadingsAreNotEvaluated) {
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
-  // An interval is evaluated only if more than a quarter of its readings are present. In this test, exactly a
-  // quarter is present.
+  // An interval is evaluated only if at least half of its ticks have a reading. In this test, a quarter of
+  // the ticks have a reading.
   for (int i = 0; i < 10000; ++i) i % 4 == 0 ? health.observe(50) : health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
 }

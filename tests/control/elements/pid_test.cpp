@@ -105,8 +105,8 @@ TEST(Pid, AnAlignedStartContinuesTheCommand) {
   pid.align(31.7);
   const double feedforward = 12;
   EXPECT_NEAR(feedforward + pid.step(20, 3, feedforward), 31.7, 1e-12);
-  // Compared with the command before, the next command must change by exactly the amount that the gains of
-  // the PID produce.
+  // The error remains 17 mm, so only the integral action changes the next command: by 8 kPa/(mm s) times the
+  // error times the tick.
   const double next = feedforward + pid.step(20, 3, feedforward);
   EXPECT_NEAR(next, 31.7 + 8 * tick_s * 17, 1e-9);
 }

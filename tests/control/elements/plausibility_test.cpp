@@ -67,7 +67,7 @@ TEST(Plausibility, AJumpIsInvalidUntilTheSpeedLimitPermitsTheMotion) {
   EXPECT_EQ(channel.next(12), Validity::jumped);
   int ticks = 1;
   while (channel.next(12) == Validity::jumped) ++ticks;
-  EXPECT_EQ(ticks, 5) << "a motion of 5.1 mm at 200 mm/s takes 25.5 ms";
+  EXPECT_EQ(ticks, 5) << "the jump exceeds the margin by 5.1 mm, which takes 25.5 ms at 200 mm/s";
 }
 
 TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {

@@ -115,8 +115,8 @@ TEST(ActuatorInverse, SolvesFromRandomStates) {
   }
 }
 
-// Tests three fingers for which a Newton step overshoots the solution. The fingers have a stop, a curvature
-// of either sign, and a soft section.
+// Tests 60 random fingers for which a Newton step can overshoot the solution. Each finger has a curvature of
+// either sign and two stops.
 TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> pressure(0, 60), curvature(-4, 4), place(0, 12);

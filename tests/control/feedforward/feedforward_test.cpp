@@ -116,8 +116,8 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   EXPECT_EQ(run.out_of_reach, 0);
 }
 
-// Returns bench_twin with two additional blocks: an electro-pneumatic regulator, of which only the command is
-// known, and the dead band of a worn linkage.
+// Returns bench_twin with a dead band of the valve and an electro-pneumatic regulator in place of the valve
+// lag.
 model::Model regulated_twin() {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model = model::with_block(model, model::block_of<model::ValveDeadband>({{"band_kpa", 1.2}}));
@@ -165,7 +165,8 @@ TEST(FullModelFeedforward, StartsFromTheStatesOfRegulatorAndDeadBand) {
   EXPECT_LT(worst_mm, 0.05);
 }
 
-// The line loses pressure by a leak. The command must compensate for this pressure loss.
+// A leak or a wrong pressure scale makes the pressure in the finger lower than the command. The command must
+// compensate for this difference.
 TEST(FullModelFeedforward, TracksThroughALeakAndAPressureScale) {
   const model::Model twin = model_named("bench_twin");
   const Reference sine = sine_reference(0.1);
@@ -258,7 +259,7 @@ TEST(FullModelFeedforward, AValveSaturationIsReportedAsOutOfReach) {
   EXPECT_GT(run.out_of_reach, 100);
 }
 
-// A corner or a jump of the reference must not cause an oscillation of the planned command.
+// A corner or a jump of the reference must not cause an oscillation of the command.
 TEST(FullModelFeedforward, AReferenceJumpCausesNoOscillation) {
   const model::Model twin = model_named("bench_twin");
   for (const double slew : {60.0, 120.0, 400.0}) {

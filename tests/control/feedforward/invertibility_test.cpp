@@ -181,7 +181,8 @@ TEST(Invertibility, NotUndoneNamesEveryBlockWithoutAnInverse) {
     for (const model::Station station : {model::Station::actuator, model::Station::load}) {
       EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
     }
-    // The feedforward inverts three blocks of the valve: a lag, a dead band and a bound.
+    // The feedforward inverts a lag, a dead band or a bound of the valve only if the type of the block is in
+    // its list. The type `new` is not in this list.
     EXPECT_EQ(named(model::Station::valve, inverse),
               inverse == lead || inverse == play || inverse == bound || inverse == none);
   }

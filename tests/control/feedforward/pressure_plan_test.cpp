@@ -36,8 +36,8 @@ TEST(SettledLine, PassesThroughTheEndsOfThePressureRange) {
   EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
 }
 
-// The settled line describes the true position of the finger. It must therefore not depend on the dead time,
-// the sensor and the noise of the model.
+// The settled line describes the true position of the finger at rest. It must therefore not depend on the
+// dead time, the dead band, the sensor and the noise of the model.
 TEST(SettledLine, DoesNotDependOnDeadTimeSensorOrNoise) {
   const model::Model twin = sim::model_named("bench_twin");
   model::Model shown = twin;

@@ -28,8 +28,8 @@ double slewed_kpa(int tick) {
 // Compares the running model with the chain. The chain contains a delay line. The running model computes
 // ahead of time, stores the values, and reads them after the dead time. The two simulations differ for two
 // reasons. First, within a tick the pressure is linear in the running model and exponential in the chain.
-// This difference corresponds to a time shift of T^2/(12 tau) = 47 us (0.4 um of creep at 20 kPa/s). Second,
-// the running model interpolates between stored values.
+// This difference corresponds to a time shift of T^2/(12 tau) = 47 us, for the tick T and the valve lag tau.
+// At 20 kPa/s, the creep differs by 0.4 um. Second, the running model interpolates between stored values.
 void expect_same_as_the_chain(const model::Model& model, double (*command_kpa)(int), double tolerance_mm) {
   RunningModel running(model, tick_s, 0, 0.1);
   model::Chain<double> chain(model, {}, tick_s);

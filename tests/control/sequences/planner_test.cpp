@@ -23,7 +23,7 @@ using sim::tick_s;
 
 constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
 
-/// A motion from 0 mm to the first value of a sine, a pause of 1 s, and the sine.
+/// A motion from 0 mm to `begins_mm` in `after_s`, a pause of 1 s, and a sine.
 struct Motion {
   double begins_mm = 6;
   double after_s = 3;
@@ -190,8 +190,8 @@ double bend_of(const std::vector<double>& pressure_kpa) {
   return sum;
 }
 
-// Below its pressure threshold, the finger does not move, so all commands cause the same error. Among these
-// commands, the planner must choose a smooth one.
+// Below its pressure threshold, the finger does not move, so all commands below the threshold cause the same
+// error. Among these commands, the planner must choose a smooth one.
 TEST(Planner, ChoosesASmoothCommandIfTheFingerDoesNotMove) {
   const model::Model dead = model::with_block(
       model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));

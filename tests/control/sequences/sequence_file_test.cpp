@@ -64,7 +64,7 @@ steps:
   EXPECT_EQ(steps[3].squeeze.by_kpa, 4);
   EXPECT_EQ(steps[3].squeeze.speed_kpa_per_s, 6);
   EXPECT_EQ(steps[3].bounds.squeeze_max_kpa, 4)
-      << "the pressure bound of the step is its final gripping pressure";
+      << "without squeeze_max_kpa, squeeze_kpa is also the limit of the gripping pressure";
   EXPECT_TRUE(std::isinf(steps[4].hold_s));
   EXPECT_EQ(steps[4].bounds.squeeze_max_kpa, 3);
   EXPECT_EQ(steps[5].on_contact, OnContact::grip);
@@ -121,7 +121,7 @@ steps:
   EXPECT_EQ(sequence->steps[6].profile.points, (std::vector<Point>{{0, 5}, {2, 9}, {3, 5}}));
 }
 
-/// Returns a pressure step with `count` points at intervals of 1 s.
+/// Returns a sequence with one pressure step, which has `count` points at intervals of 1 s.
 std::string with_points(int count) {
   std::string points;
   for (int i = 0; i < count; ++i) {

@@ -310,7 +310,7 @@ TEST(SequencePlans, AFingerWithASensorOffsetReachesTheTarget) {
     ASSERT_TRUE(rig.run_until(State::running, 12));
     const Motion motion = watch(rig, 5);
     EXPECT_LT(motion.jump_kpa, 0.5)
-        << "the command has no step that is larger than noise and planned motion explain";
+        << "the planned motion and the sensor noise change the command by less than 0.5 kPa per tick";
     EXPECT_LT(motion.worst_mm, 1.5 + 0.8);
     EXPECT_NEAR(rig.plant_mm(0) + 1.5, 15, 0.15);
   }
@@ -344,7 +344,7 @@ TEST(SequencePlans, AStartFromAnotherDisplacementIsBumplessAndBetterThanPidAlone
     const Motion alone = from_half_way(rig_with(model, FeedforwardKind::none, gains), model);
     std::printf("%s: worst %.2f mm, with PID alone %.2f mm\n", model, planned.worst_mm, alone.worst_mm);
     EXPECT_LT(planned.jump_kpa, 0.5)
-        << "the command has no step that is larger than noise and planned motion explain";
+        << "the planned motion and the sensor noise change the command by less than 0.5 kPa per tick";
     EXPECT_LT(planned.worst_mm, alone.worst_mm);
   }
 }
@@ -365,7 +365,8 @@ TEST(SequencePlans, TheMotionBeforeARetryIsBumpless) {
   }
 }
 
-// If the prediction of a model is infinite or NaN in one tick, the command must still be a finite number.
+// Without a plan, the command must change smoothly from the present pressure to the pressure of the settled
+// line.
 TEST(PlannedFeedforward, WithoutAPlanTheCommandFollowsTheSettledLine) {
   const model::Model twin = sim::model_named("bench_twin");
   const LimitSettings limits{0, 60, 400, 400, 0, 30, 1};

@@ -254,8 +254,7 @@ TEST(ChannelController, AGapInTheReadingsHoldsFeedbackThenTrackingResumes) {
 }
 
 TEST(ChannelController, ResynchronisingRemovesTheModelOffset) {
-  // The controller restarts while the finger still creeps. The zero offset of the sensor has changed since
-  // the stop.
+  // The controller restarts while the finger is inflated and still creeps.
   ChannelSettings settings = twin_settings();
   Rig rig(settings, 0.02);
   rig.press(30);

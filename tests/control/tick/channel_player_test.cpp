@@ -1,5 +1,5 @@
-// Tests the demand of one channel in the tick in which a step begins, before any part of the step has been
-// executed.
+// Tests the demand of one channel in the tick in which a step begins, and the reaction of the channel to a
+// contact.
 
 #include "control/tick/channel_player.h"
 
@@ -57,8 +57,8 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
 }
 
 // While the finger presses on a part, the integral of the feedback would increase the gripping pressure.
-// Therefore the integral is held in steps that grip or hold a part. In all other steps, the integral must
-// continue.
+// The integral is therefore held during a contact in grip and hold steps. After the grip result HOLDING, the
+// integral is held in all steps, until the contact ends.
 TEST(ChannelPlayer, ContactHoldsFeedbackOnlyWhileGrippingOrHolding) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,

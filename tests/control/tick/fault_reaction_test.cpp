@@ -273,7 +273,7 @@ TEST_F(SingleFault, PressureFaultIsSuppressedForALimitedTimeAtStart) {
   EXPECT_EQ(rig.output().state, State::idle);
   rig.run(1);
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed)
-      << "after the start, the fault is suppressed only for a limited time of deflation";
+      << "after the start, the fault is suppressed only for the time in which a finger may deflate";
 }
 
 TEST_F(SingleFault, IntermittentCommunicationDoesNotHideABurstLine) {

@@ -27,7 +27,7 @@ class HealthInFreeMotionTest : public testing::Test {
     }
     return false;
   }
-  /// Returns bench_twin with the stiffness of all creep springs multiplied by `times`.
+  /// Returns bench_twin with the stiffness of all springs of the block kelvin_voigt multiplied by `times`.
   static model::Model stiffer(double times) {
     model::Model model = twin();
     auto values = model::flat_values(model);
@@ -56,7 +56,7 @@ TEST_F(HealthInFreeMotionTest, APartHeldAfterAStopCausesNoHealthAlarm) {
   rig.run(1);
   rig.request(Request::Kind::stop);
   ASSERT_TRUE(rig.run_until(State::idle, 5));
-  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "a part still holds the finger";
+  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "the finger is still pressed on the part";
   rig.run(30);
   EXPECT_FALSE(unfit(rig));
 }
@@ -74,7 +74,7 @@ TEST_F(HealthInFreeMotionTest, APartHeldAfterAFaultCausesNoHealthAlarm) {
   rig.run(0.5);
   rig.request(Request::Kind::acknowledge);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
-  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "a part still holds the finger";
+  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "the finger is still pressed on the part";
   ASSERT_NE(rig.result(0), GripResult::holding) << "no grip result reports that a part holds the finger";
   rig.run(30);
   EXPECT_FALSE(unfit(rig));

@@ -83,7 +83,7 @@ TEST_F(SequencePlayback, EachOnFailActionSetsPressureStepsAndResults) {
     }
     EXPECT_EQ(begun, expected);
     EXPECT_EQ(rig.result(1), test.lets_go ? GripResult::released : GripResult::error)
-        << "each finger of the grip has a result";
+        << "the right finger also gets a result, although it has no grip step";
   }
 }
 

@@ -202,7 +202,7 @@ TEST_F(VacuumRig, APressureMaximumBelowRestIsRefused) {
   EXPECT_EQ(bounded_by("0"), "");
 }
 
-/// All steps of the published sequence are above the rest pressure. An upper pressure limit of a step must
+/// All steps of the sequence pick_stone are above the rest pressure. An upper pressure limit of a step must
 /// not make the rig apply a vacuum to a finger.
 TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);

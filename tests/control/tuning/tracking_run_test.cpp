@@ -154,8 +154,7 @@ TEST(LoopMargins, AgreeWithTheAnalyticMarginsOfAnIntegrator) {
       loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s);
   EXPECT_NEAR(half.crossover_hz, 5 / (2 * M_PI), 0.01);
   EXPECT_GT(half.sensitivity, 1.5);
-  // A loop of an integrator with the dead time L and a proportional controller with the gain K is stable if K
-  // L < pi/2.
+  // With c = 1 and the dead time L, this loop is stable if K L < pi/2.
   const double limit = M_PI / 2 / dead_s;
   EXPECT_TRUE(std::isfinite(
       loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s)

@@ -108,8 +108,8 @@ TEST(Tune, NamesAValveLagOnlyIfTheModelHasALag) {
   EXPECT_EQ(without.limited_by.find("s of lag"), std::string::npos) << without.limited_by;
 }
 
-// Below 0.1 Hz, half a period would take minutes of simulation, so the simulation settles for a quarter of a
-// period only.
+// Below 0.1 Hz, the simulation settles for a quarter of a period instead of half a period, because a period
+// is longer than 10 s.
 TEST(Tune, SlowReferencesSettleForAQuarterOfACycle) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 0;
