@@ -66,8 +66,8 @@ class OneOutput final : public drivers::Board {
 };
 
 /// A minimal controller. While it runs, its command rises in every tick. The controller stops when the bus
-/// reports a fault. After a stop, its command does not exceed the present output. After a start, the
-/// controller runs again.
+/// thread reports a fault that inhibits motion, or two failed exchanges in succession. After a stop, its
+/// command does not exceed the present output. After a start, the controller runs again.
 class LeastLoop {
  public:
   explicit LeastLoop(SharedState& shared) : shared_(shared) {}
@@ -176,7 +176,7 @@ std::string follow(std::span<const Step> path) {
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
   if (controller.heard != shared.bus.value().health.inhibit)
-    return "the control loop did not receive the reason for the inhibited motion";
+    return "the control loop does not know the newest inhibition of motion";
   shared.bus.fetch();
   if (shared.bus.value().health.fault != FaultCode::none) return "the bus fault never ends";
   return {};

@@ -29,8 +29,8 @@ TEST(Histogram, CountsNegativeAsZeroAndHugeValuesInTheLastBin) {
 }
 
 TEST(Histogram, EachValueFallsIntoTheBinThatContainsIt) {
-  // Each duration must lie within the limits of its bin. No bin may be wider than 0.8 % of a duration in the
-  // bin, apart from 1 ns.
+  // The lower limit of the bin must not exceed the duration. It may be below the duration by less than 0.8 %
+  // of the duration plus 1 ns.
   for (std::int64_t duration = 1; duration < (std::int64_t{1} << 35); duration += 1 + duration / 97) {
     Histogram histogram;
     histogram.add(duration);

@@ -228,8 +228,8 @@ TEST(LoopRules, NoTickCausesPageFaults) {
   around.after = [&] { getrusage(RUSAGE_THREAD, &after); };
   run_threads(*parts, 3 * ns_per_s, around);
   EXPECT_GT(parts->loop_statistics.ticks.value(), 100U);
-  // Page faults do not occur if the memory is locked. If the process has no permission to lock memory, the
-  // ring buffers cause page faults when they are first filled.
+  // Locked memory causes no page faults. If the process has no permission to lock memory, the kernel may
+  // remove a page from memory, and the next access to this page causes a page fault.
   EXPECT_EQ(after.ru_majflt, before.ru_majflt);
   EXPECT_EQ(after.ru_minflt, before.ru_minflt);
 }

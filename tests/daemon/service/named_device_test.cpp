@@ -49,7 +49,7 @@ TEST(NamedDevice, FindsAConverterAndTheWrittenOutputAttributes) {
   const auto inputs = named_device(rig, "iio:device0");
   ASSERT_TRUE(inputs);
   EXPECT_TRUE(inputs->written.empty())
-      << "every user may read the input attributes, so the list of written attributes is empty";
+      << "the device has only inputs, so softgrip writes none of its attributes";
   EXPECT_FALSE(named_device(rig, "iio:device2"));
   EXPECT_FALSE(named_device(rig, "iio:device3"));
   std::ofstream(root.path() + "/iio:device2/name") << "dac7578\n";

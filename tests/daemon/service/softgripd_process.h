@@ -41,8 +41,8 @@ class SoftgripdProcess {
  public:
   struct Start {
     std::vector<std::string> arguments;
-    std::vector<std::string> environment{};  ///< variables NAME=value to add to the environment of the test
-                                             ///< for the daemon
+    std::vector<std::string> environment{};  ///< variables NAME=value of the daemon, in addition to the
+                                             ///< environment of the test
     std::function<void()> in_child{};        ///< function to call in the child process between fork and exec
   };
 

@@ -1,9 +1,7 @@
 // Fuzz target: takes arbitrary bytes as a line of a client. The parser must return a request, or a refusal
 // with a message.
 //
-//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
-//   build/fuzz/tests/daemon/client_request_fuzz -max_total_time=660 -max_len=1024
-//   -dict=tests/daemon/client_request.dict NEW_CORPUS tests/daemon/socket/client_request_corpus
+//   Command: scripts/fuzz.sh client_request_fuzz 30
 
 #include <cstddef>
 #include <cstdint>

@@ -208,7 +208,7 @@ TEST_F(SocketServerTest, AnUrgentLineIsAcceptedAtTheClientLimit) {
   EXPECT_EQ(lines_, std::vector<std::string>{"urgent: down"});
   EXPECT_EQ(received(late), "done\n");
   turn(2, 3 * ns_per_s);
-  EXPECT_FALSE(received(late)) << "only one message was sent";
+  EXPECT_FALSE(received(late)) << "the server closes the connection without a further message";
 }
 
 TEST_F(SocketServerTest, TheLongestSilentClientIsDisconnectedFirst) {
