@@ -7,8 +7,8 @@
 namespace softgrip::drivers::exchange_plan_test {
 namespace {
 
-/// Returns a board map. The 8 inputs begin at holding register 0, and their status begins at register 8. The
-/// 4 outputs begin at register 100, and their read-back begins at register 20.
+/// Returns a board map. The 8 inputs begin at holding register 0. The 4 outputs begin at register 100. The
+/// map has neither a status of the inputs nor a read-back of the outputs.
 BoardMap plain_map() {
   BoardMap map;
   map.inputs.registers = {.function = 3, .address = 0, .count = 8, .kind = RegisterKind::uint16};

@@ -362,7 +362,8 @@ TEST_F(WatchdogTest, TheFirstExchangeWritesCommandsBeforeAndAfterClearing) {
   EXPECT_EQ(requests[3], write);
   EXPECT_EQ(server_.holding(10), 2048);
   trip();
-  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped) << "only the first trip of a session is cleared";
+  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped)
+      << "only a trip before the first exchange of a session is cleared";
 }
 
 TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {

@@ -68,7 +68,7 @@ TEST_F(ModbusBoardTest, DetectsAWriteOfAnotherClientWithinEightExchanges) {
   EXPECT_NE(std::string(board_->detail()).find("channel 'right': another client"), std::string::npos)
       << board_->detail();
   EXPECT_EQ(server_.holding_[11], 0)
-      << "the output must not be overwritten before it is known if another client wrote it";
+      << "the exchange that detects the other client does not write to the output";
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
@@ -82,7 +82,7 @@ TEST_F(ModbusBoardTest, AnIgnoredWriteIsNotReportedAsAWriteOfAnotherClient) {
     ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
     server_.ignore_writes(true);
     ASSERT_NE(exchange(50, 10), BusStatus::overwritten)
-        << "an exchange that begins with a read request finds the correct output";
+        << "an exchange that reads the outputs first finds the last accepted command";
     for (int i = 0; i < 16 + first; ++i) ASSERT_EQ(exchange(50, 10), BusStatus::write_refused) << i;
     server_.ignore_writes(false);
   }

@@ -2,9 +2,7 @@
 // obtained. The first bytes choose the request and the kind of register; the remaining bytes are the
 // response.
 //
-//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target modbus_reply_fuzz
-//   build/fuzz/tests/drivers/modbus_reply_fuzz -max_total_time=660 -max_len=512
-//   tests/drivers/modbus/modbus_reply_corpus
+//   Command: scripts/fuzz.sh modbus_reply_fuzz 30
 
 #include <array>
 #include <cmath>

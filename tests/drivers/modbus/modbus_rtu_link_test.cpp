@@ -44,7 +44,7 @@ SerialLine line_at(const std::string& device, std::uint32_t baud = 115200) {
 }
 
 /// Returns a line at 9600 baud. After a fault, the next session first listens for the duration of the longest
-/// frame, which is 0.25 s at 9600 baud. This time is much longer than the delay of a byte on a computer under
+/// frame, which is 0.27 s at 9600 baud. This time is much longer than the delay of a byte on a computer under
 /// load. At 115200 baud, the duration would be only 22 ms, which is too short.
 SerialLine listening_long() {
   return line_at("", 9600);
@@ -271,7 +271,8 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondResponseIgnored) {
     EXPECT_TRUE(right(link));
     ASSERT_EQ(link.ask(1, {.function = 4, .address = 9, .count = 2}, now() + generous), BusStatus::ok)
         << link.detail();
-    EXPECT_EQ(word_at(link.data(), 0), 1009) << "not the second response to the previous request";
+    EXPECT_EQ(word_at(link.data(), 0), 1009)
+        << "the data are not those of the second response to the previous request";
     EXPECT_TRUE(link.is_open());
   }
 }

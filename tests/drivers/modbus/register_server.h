@@ -14,11 +14,10 @@ namespace softgrip::drivers::test {
 
 class RegisterServer {
  public:
-  /// A request that the server has received: function code, address, and either the number of registers or
-  /// the written value.
+  /// A request that the server has received.
   struct Request {
     std::uint8_t function = 0;
-    std::uint16_t address = 0;
+    std::uint16_t address = 0;        ///< first address to read; without a read, first address to write
     std::uint16_t count = 0;          ///< number of registers to read; 0: the request only writes
     std::uint16_t write_address = 0;  ///< first address to write, with function codes 5, 6, 16 and 23
     std::vector<std::uint16_t> written;
