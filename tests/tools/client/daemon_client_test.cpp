@@ -169,7 +169,8 @@ TEST(DaemonClient, ReportsMalformedAndIncompleteRepliesAsIoErrors) {
 
 using Json = nlohmann::ordered_json;
 
-/// A listening socket in place of a daemon. It sends nothing; a test sends the lines of the daemon itself.
+/// A listening socket in place of a daemon. The test accepts the connection and sends the lines of the
+/// daemon.
 struct SilentDaemon {
   daemon::testing::TemporaryFolder folder;
   std::string path = folder.path() + "/daemon.sock";
@@ -207,12 +208,13 @@ TEST(DaemonLink, WaitsAQuarterSecondBetweenConnectionAttempts) {
   ::unlink(daemon.path.c_str());
   EXPECT_FALSE(link.connect(ns_per_s));
   daemon.listener = std::move(*net::listen_unix(daemon.path));
-  EXPECT_FALSE(link.connect(ns_per_s + ns_per_s / 4 - 1)) << "250 ms have not passed";
+  EXPECT_FALSE(link.connect(ns_per_s + ns_per_s / 4 - 1))
+      << "the pause of 250 ms after a failed attempt has not ended";
   EXPECT_FALSE(link.receive_lines([](Json&) {}));
   EXPECT_TRUE(link.connect(ns_per_s + ns_per_s / 4));
   link.disconnect();
   EXPECT_FALSE(link);
-  EXPECT_FALSE(link.connect_now()) << "connects without a pause";
+  EXPECT_FALSE(link.connect_now()) << "connect_now() does not wait for the end of the pause";
   EXPECT_TRUE(link);
 }
 

@@ -58,7 +58,7 @@ TEST_F(KeyDialogueTest, StartProposesTheLastSequenceAndAcceptsAnotherName) {
   EXPECT_EQ(type("y"), R"({"command":"start","sequence":"empty_grip"})");
   ran_.clear();
   type("g");
-  EXPECT_EQ(type("\r"), "") << "without the name of a sequence, no sequence must be started";
+  EXPECT_EQ(type("\r"), "") << "without the name of a sequence, the key starts no sequence";
   EXPECT_TRUE(dialogue_.question().empty());
 }
 

@@ -42,14 +42,15 @@ TEST(StatusView, ShowsResidualPressureFirstAndInFull) {
   pressed["under_pressure"] = {
       {"channels", Json::array()},
       {"command", "softgrip release"},
-      {"text", "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip release` lets it down."}};
+      {"text", "Fingers are pressurised: left 33.1 kPa. `softgrip release` vents them; a held part drops."}};
   const auto wide = view_of(pressed, {100, false, false});
   EXPECT_EQ(wide[0], "softgrip bench  idle, UNDER PRESSURE  pick_stone: step 3/4 hold  12.3 s");
-  EXPECT_EQ(wide[1], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip release` lets it down.");
+  EXPECT_EQ(wide[1],
+            "Fingers are pressurised: left 33.1 kPa. `softgrip release` vents them; a held part drops.");
   const auto narrow = view_of(pressed, {60, false, false});
   EXPECT_EQ(narrow[1], "  pick_stone: step 3/4 hold  12.3 s");
-  EXPECT_EQ(narrow[2], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip");
-  EXPECT_EQ(narrow[3], "release` lets it down.");
+  EXPECT_EQ(narrow[2], "Fingers are pressurised: left 33.1 kPa. `softgrip release`");
+  EXPECT_EQ(narrow[3], "vents them; a held part drops.");
   EXPECT_NE(line_of_status(pressed).find("idle, UNDER PRESSURE"), std::string::npos);
 }
 

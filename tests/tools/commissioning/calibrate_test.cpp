@@ -237,7 +237,7 @@ TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
   EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
 }
 
-/// If the sensor that measures the motion of a finger gives no reading, no procedure may move this finger.
+/// If a sensor that a procedure needs gives no valid reading, the procedure must not raise the pressure.
 TEST_F(CalibrateTest, DoesNotRaiseThePressureWithoutTheRequiredSensor) {
   using Procedure = std::function<std::optional<Refusal>(MotionSession&, Operator&)>;
   const auto refusal = [](const auto& result) {

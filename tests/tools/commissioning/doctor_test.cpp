@@ -204,7 +204,7 @@ TEST_F(DoctorTest, WithoutAWatchdogAStaticCheckDoesNotAccessTheBoard) {
   rig_.settings.safety.board_vents_when_silent = false;
   examine(false);
   expect("sensors", Verdict::warn, "the fingers may still hold a part");
-  EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "no exchange with the board may take place";
+  EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "softgrip doctor must not exchange data with the board";
 }
 
 TEST_F(DoctorTest, ASensorThatIsOutOfRangeFails) {
@@ -213,8 +213,8 @@ TEST_F(DoctorTest, ASensorThatIsOutOfRangeFails) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
-/// A finger without valid displacement readings could exceed its limits unnoticed. The command must therefore
-/// not move this finger. The command may move all other fingers.
+/// A finger without valid displacement readings could exceed its limits unnoticed. softgrip doctor must
+/// therefore not move this finger. It may move all other fingers.
 TEST_F(DoctorTest, ASensorThatIsOutOfRangePreventsTheMotionOfTheFinger) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
@@ -450,7 +450,8 @@ TEST(ExamineDaemon, DerivesTheVerdictFromStatusAndStatistics) {
 TEST(ExamineDaemon, AnUnfitModelFailsOnlyAfterASequenceHasRun) {
   using Json = nlohmann::ordered_json;
   const auto unfit = [](Json& status, Json&) { status["channels"][0]["health"] = "unfit"; };
-  EXPECT_EQ(worst_after(unfit), Verdict::warn) << "at start-up the finger may still have moved to rest";
+  EXPECT_EQ(worst_after(unfit), Verdict::warn)
+      << "at start-up, the motion of the finger to rest can make the model unfit";
   EXPECT_EQ(worst_after([&](Json& status, Json& statistics) {
               unfit(status, statistics);
               status["sequence"] = {{"name", "pick"}};

@@ -143,8 +143,7 @@ class MotionSessionTest : public ::testing::Test {
     if (auto there = session.sample(1); !there) return tl::unexpected(there.error());
     return session.ramp(0, 0, speed_kpa_per_s);
   }
-  /// Returns the largest change of a command in one cycle. The limits and the requested speed determine this
-  /// change.
+  /// Returns the largest change of a command in one cycle at the requested speed [kPa].
   [[nodiscard]] double step_kpa() const { return speed_kpa_per_s / rig_.settings.rate_hz + equal_kpa; }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");

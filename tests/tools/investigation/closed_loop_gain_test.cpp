@@ -95,7 +95,7 @@ TEST(ClosedLoopGain, UsesThePidAloneForAModelWithoutMotion) {
 TEST(ClosedLoopGain, IsReproducibleAndEqualForEqualModels) {
   ClosedLoopQuestion question;
   question.recalibrated = question.extended = loaded("bench_twin");
-  question.span_mm = 11;  // 11 mm; the reference 13 ± 7 mm would need a span of 22 mm
+  question.span_mm = 11;  // half of the span of 22 mm that the reference 13 ± 7 mm needs
   const ClosedLoopGain one = measure_closed_loop(question);
   const ClosedLoopGain two = measure_closed_loop(question);
   EXPECT_EQ(one.extended.rmse_mm, two.extended.rmse_mm);

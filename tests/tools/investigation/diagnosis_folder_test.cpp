@@ -15,8 +15,8 @@ model::Model loaded(const std::string& path) {
   return model::load_model(path, problems).value();
 }
 
-/// The command must remove the file of an earlier diagnosis, because a user would associate this file with
-/// the new model.
+/// `softgrip diagnose` must remove the file feedforward_model.yaml of an earlier diagnosis, because a user
+/// would associate this file with the new model.
 TEST(DiagnosisFolder, ContainsAFeedforwardModelOnlyIfItIsPartOfTheModel) {
   const ScratchFolder scratch;
   const std::filesystem::path file = std::filesystem::path(scratch.path()) / "feedforward_model.yaml";

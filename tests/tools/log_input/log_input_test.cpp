@@ -12,8 +12,9 @@ namespace {
 
 constexpr std::size_t samples = 400;
 
-/// Writes a log and returns its path. At the beginning of the log, the command jumps from 5 to 60 kPa, and
-/// the pressure follows with a lag of 0.3 s.
+/// Writes a log and returns its path. The log begins immediately after the command has jumped from 5 to 60
+/// kPa. After 4 s, the command jumps to 30 kPa. The pressure follows with a lag of 0.3 s. If `measured` is
+/// false, the log has no column of the measured pressure.
 std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool measured = true) {
   const std::string path = folder.path() + "/step.csv";
   std::ofstream out(path);
@@ -46,7 +47,8 @@ TEST(LogInput, StartsAtTheLowestCommandWithoutAMeasuredPressure) {
   const auto logs = read_logs({begun_at_a_step(folder, false)}, staged);
   ASSERT_TRUE(logs);
   ASSERT_EQ(logs->front().size(), samples + 1);
-  EXPECT_EQ(logs->front().pressure_command_kpa.front(), 30) << "this log starts at its lowest command";
+  EXPECT_EQ(logs->front().pressure_command_kpa.front(), 30)
+      << "the inserted sample has the lowest command of the log";
 }
 
 TEST(LogInput, InsertsNoSampleIfTheMeasuredPressureIsTheInput) {

@@ -26,7 +26,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Length of one step of the simulated time. A master counts as silent after two steps without a heartbeat.
-/// After one step, a connection counts as idle, and a daemon that sends nothing counts as silent.
+/// After one step without a request, a new connection may replace a connection. After one step, a daemon that
+/// sends nothing counts as silent.
 constexpr Nanoseconds step = ns_per_s * 3 / 2;
 constexpr int silent_steps = 2;
 constexpr std::size_t plcs = 2;
@@ -50,7 +51,7 @@ Settings settings_of_the_search() {
   document::Problems problems;
   Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   settings.max_masters = plcs;
-  settings.idle_s = 1e6;  // this time is so long that the gateway never closes an idle connection
+  settings.idle_s = 1e6;  // so long that the gateway never closes a connection because of this time
   settings.registers.most_fingers = 1;
   return settings;
 }
@@ -171,7 +172,7 @@ struct World {
     check(!asked.executed, "a command is executed twice");
     check(!asked.reported_refused, "a command was reported as refused, but is executed");
     check(asked.code != start || cause->halts == halts,
-          "a start outlives a stop or a vent that came after it");
+          "a start is executed although a stop or a vent was executed after the start was written");
     if (asked.code == vent) ++halts;
     for (Command& other : commands) other.over = other.over || other.executed;
     asked.executed = true;
@@ -509,7 +510,7 @@ std::vector<Step> steps_from(World& world) {
     add(free && master.progress != Progress::begins, who + "writes its block",
         [=](World& w) { w.write(plc); });
     const bool answered = free && (master.progress == Progress::begins || master.answered_on == wire->id);
-    add(answered && master.alive, who + "reads the end of its command", [=](World& w) { w.look(plc); });
+    add(answered && master.alive, who + "reads the outcome of its command", [=](World& w) { w.look(plc); });
     const bool ready = master.progress == Progress::ready;
     for (const std::uint16_t code : {start, vent}) {
       add(master.alive && world.left.commands[plc] > 0 &&

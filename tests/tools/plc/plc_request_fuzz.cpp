@@ -1,9 +1,7 @@
 // Fuzz target: passes arbitrary bytes to softgrip-plc as a master would send them, in pieces of any size. No
 // daemon runs.
 //
-//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target plc_request_fuzz
-//   build/fuzz/tests/plc_request_fuzz -max_total_time=660 -max_len=1024 NEW_CORPUS
-//   tests/tools/plc/plc_request_corpus
+//   Command: scripts/fuzz.sh plc_request_fuzz 30
 
 #include <algorithm>
 #include <cstdint>

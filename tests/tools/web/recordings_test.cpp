@@ -31,8 +31,8 @@ class RecordingsTest : public ::testing::Test {
     fs::create_directories(folder_ / recording);
     std::ofstream(folder_ / recording / file) << file;
   }
-  /// Returns the list of recordings for a time one minute from now. At that time, the time stamps of the
-  /// files are so old that a later change of a file would be visible.
+  /// Returns the list of recordings for a time one minute from now. At that time, the time stamp of a folder
+  /// is so old that a further change would give the folder a different time stamp.
   std::string list() { return recordings_.list(wall_time_now() + 60 * ns_per_s).dump(); }
 
   fs::path folder_ = fs::temp_directory_path() / ("recordings_" + std::to_string(::getpid()));
@@ -104,7 +104,7 @@ TEST_F(RecordingsTest, ConsidersOnlyTheNewestFolders) {
   for (std::size_t i = 0; i < 2 * Recordings::most_considered + 10; ++i)
     fs::create_directory(folder_ / ("run-" + std::to_string(100'000 + i)));
   add("run-0", "run.csv");
-  EXPECT_EQ(list(), "[]") << "the folder run-0 is older than all folders that the list contains";
+  EXPECT_EQ(list(), "[]") << "run-0 is not one of the newest folders, and only these are read";
   EXPECT_EQ(recordings_.folders_read(), 1 + Recordings::most_considered);
   add("run-999999", "run.csv");
   EXPECT_EQ(list(), R"([{"name":"run-999999","files":["run.csv"]}])");

@@ -1,9 +1,7 @@
-// Fuzz target of the request parser of softgrip-web: for any bytes of a client, the parser refuses the
-// request, answers it or waits for more bytes.
+// Fuzz target of softgrip-web: for any bytes of a client, softgrip-web refuses the request, answers it or
+// waits for more bytes.
 //
-//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target web_request_fuzz
-//   build/fuzz/tests/web_request_fuzz -max_total_time=660 -max_len=12000 NEW_CORPUS
-//   tests/tools/web/web_request_corpus
+//   Command: scripts/fuzz.sh web_request_fuzz 30
 
 #include <cstddef>
 #include <cstdint>

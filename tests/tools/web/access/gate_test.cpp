@@ -94,7 +94,7 @@ TEST_F(GateTest, ASessionHasTheRoleOfItsTokenUntilItEnds) {
   browser.cookie = "softgrip=" + id;
   for (int s = 0; s < 100; s += 9) EXPECT_EQ(gate.authorize(browser, true, s * ns_per_s), Role::operate) << s;
   EXPECT_EQ(gate.authorize(browser, true, 101 * ns_per_s), Role::none)
-      << "a session ends after its time, even if it was in use";
+      << "a session ends after its longest duration, even if it is in use";
 
   const std::string idle = *gate.open(look, 0);
   browser.cookie = "softgrip=" + idle;

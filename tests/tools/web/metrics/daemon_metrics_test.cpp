@@ -110,7 +110,7 @@ TEST(Metrics, OmitMetricsWithUnknownValues) {
   const std::string gone = told(nullptr, statistics());
   EXPECT_TRUE(has_line(gone, "softgrip_up 0"));
   EXPECT_EQ(gone.find("softgrip_state"), std::string::npos)
-      << "without a daemon, no old metric may be reported";
+      << "without a daemon, the last state must not be reported";
 }
 
 }  // namespace
