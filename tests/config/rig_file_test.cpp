@@ -402,7 +402,7 @@ TEST(RigFile, AModelWithALagOrAGainBeyondTheLimitsOfAControllerIsRefused) {
     Problems problems;
     const std::pair<std::string, std::string> model{"models/bench_twin.yaml",
                                                     folder.path() + "/changed.yaml"};
-    edited("rig.yaml", {model, model, model}, problems);  // two simulated fingers and the channels
+    edited("rig.yaml", {model, model, model}, problems);  // the file names the model three times
     return problems.format();
   };
   const auto contains = [](const std::string& text, const std::string& part) {
@@ -419,8 +419,8 @@ TEST(RigFile, AModelWithALagOrAGainBeyondTheLimitsOfAControllerIsRefused) {
       << soft;
 }
 
-// A PID controller raises the pressure if the displacement is too small. With a negative gain of the finger,
-// it would run to the largest pressure.
+// A PID controller raises the pressure if the displacement is too small. If the gain of the finger is
+// negative, the controller would raise the pressure to its upper limit.
 TEST(RigFile, AModelWithoutAPositiveSettledGainIsRefusedWithAnyFeedforward) {
   const ScratchFolder folder;
   const auto problems_with = [&](const std::string& gain, const std::string& feedforward) {

@@ -223,8 +223,8 @@ TEST(BoardMapFile, AModuleCanHaveOnlyInputsOrOnlyOutputs) {
   EXPECT_TRUE(inputs.map->has_inputs());
   EXPECT_FALSE(inputs.map->has_outputs());
 
-  // If an entry has a key of an input, the key `inputs` is required. If the entry has a key of an output, the
-  // key `outputs` is required. A module needs at least one of the keys `inputs` and `outputs`.
+  // A key that concerns the inputs, such as `input_status`, requires the key `inputs`. A key that concerns
+  // the outputs, such as `read_back`, requires the key `outputs`. At least one of these two keys is required.
   EXPECT_NE(
       read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
       std::string::npos);

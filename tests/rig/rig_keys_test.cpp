@@ -1,5 +1,5 @@
-// Tests that the declarations contain every key of the rig files that softgrip writes and ships in the
-// table of its map, and that each table has each key once.
+// Tests the tables in which the keys of rig files are declared. Each key of a rig file that softgrip writes
+// or ships must be in a table of its map, or in the list other_keys. No table may contain a key twice.
 
 #include "rig/rig_keys.h"
 
@@ -98,8 +98,8 @@ Found keys_in(const std::string& text) {
   return found;
 }
 
-/// Returns the template without its marks: a mark at the start of a line stands for lines, any other mark for
-/// a value.
+/// Returns the template without its marks. A mark at the start of a line stands for whole lines and is
+/// removed. Any other mark stands for a value and is replaced by 0.
 std::string without_marks(std::string text) {
   for (std::size_t at = text.find('$'); at != std::string::npos; at = text.find('$', at)) {
     const bool lines = at == 0 || text[at - 1] == '\n';
