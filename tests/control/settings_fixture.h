@@ -24,7 +24,7 @@ RigSettings vacuum_settings();
 PreparedSequence sequence_of(const std::string& yaml, const RigSettings& settings);
 /// Reads a sequence in config/sequences/ and prepares it for a rig.
 PreparedSequence example_sequence(const std::string& name, const RigSettings& settings);
-/// Reads the sequence in config/vacuum/ and prepares it for a rig.
+/// Reads the sequence vacuum_grip in config/vacuum/ and prepares it for a rig.
 PreparedSequence vacuum_grip(const RigSettings& settings);
 
 }  // namespace softgrip::control

@@ -16,7 +16,7 @@
 namespace softgrip::control::contact_test {
 namespace {
 
-/// Amount by which the gripping pressure may exceed a limit because of noise and the rounding of a filter
+/// Amount by which the gripping pressure may exceed a limit because of sensor noise and the lag of a filter
 /// [kPa].
 constexpr double tolerance_kpa = 0.4;
 

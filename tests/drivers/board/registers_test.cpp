@@ -99,8 +99,8 @@ TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
   }
 }
 
-// Converts a physical value to an electrical value, to a raw register value, and back. For every register
-// kind, word order and slope, the error must be at most half a step of the converter.
+// Converts a physical value to an electrical value, to a raw register value, and back. The error must be at
+// most half a step of the converter plus half a raw unit, for rising and for falling lines.
 TEST(Scaling, ARoundTripThroughARegisterIsWithinHalfAStep) {
   const unsigned seed = 13;
   std::mt19937 random(seed);

@@ -196,7 +196,7 @@ TEST(DaemonLink, PassesAllLinesReceivedBeforeTheConnectionEnds) {
   ASSERT_EQ(::send(client.get(), lines.data(), lines.size(), 0), static_cast<ssize_t>(lines.size()));
   client.reset();
   EXPECT_FALSE(link.receive_lines(on_line));
-  EXPECT_EQ(heard.size(), 4U) << "lines before the end are passed";
+  EXPECT_EQ(heard.size(), 4U) << "lines that arrive before the end of the connection are passed";
   EXPECT_FALSE(link);
   EXPECT_EQ(link.descriptor(), -1);
 }

@@ -58,7 +58,8 @@ TEST(Usage, SuggestsACommandThatMovesARigOnlyIfNoOtherNameIsSimilar) {
       << said_of({"stat"}).text;
   EXPECT_NE(said_of({"sta"}).text.find("did you mean `status`?"), std::string::npos);
   EXPECT_NE(said_of({"star"}).text.find("did you mean `start`?"), std::string::npos);
-  EXPECT_EQ(said_of({"st"}).text.find("did you mean"), std::string::npos) << "2 letters are too few";
+  EXPECT_EQ(said_of({"st"}).text.find("did you mean"), std::string::npos)
+      << "2 letters are too few for a suggestion";
 }
 
 TEST(Usage, SuggestsTheNearestOptionOfTheCommand) {

@@ -1,4 +1,4 @@
-// Tests the web server with clients on real sockets. No daemon runs.
+// Tests the web server with clients on real sockets. No softgripd runs; some tests simulate it.
 
 #include "tools/web/server.h"
 
