@@ -33,8 +33,9 @@ class SimulatedRig {
   double yields = 0.1;           ///< motion of the finger after contact with the stone, as a fraction of its
                                  ///< free motion
 
-  // The injected faults. Each fault remains active until the test resets it.
-  bool wire_cut = false;    ///< true: no exchange succeeds, and the board vents after its watchdog time-out
+  // The injected faults and the behaviour of the board. Each value except overrun_cycles remains until the
+  // test changes it.
+  bool wire_cut = false;    ///< true: no exchange succeeds, so the watchdog of the board trips
   bool board_vents = true;  ///< true: a watchdog trip of the board sets the outputs to the rest pressures
   bool bus_quiet = false;   ///< true: the bus thread has sent no report since the last tick
   bool emergency_stop = false;

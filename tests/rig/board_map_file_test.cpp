@@ -11,7 +11,7 @@ using namespace drivers;
 
 const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
 
-/// A small valid board map. Each test changes one line of this map.
+/// A small valid board map. The tests change lines of this map.
 const std::string valid = R"(name: test
 source: a test
 address_base: 1

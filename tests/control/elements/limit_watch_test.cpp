@@ -10,8 +10,8 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-/// Returns all limits that the watch reports during `seconds`. `binds(time)` returns the limit that is active
-/// at this time.
+/// Returns the names of the limits that the watch reports during `seconds`. The name "none" reports the end
+/// of a limit. `binds(time)` returns the limit that is active at this time.
 template <class Binds>
 std::vector<std::string> told(double seconds, Binds&& binds) {
   LimitWatch watch;

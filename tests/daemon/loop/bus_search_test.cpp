@@ -92,7 +92,8 @@ class LeastLoop {
     commands.last = false;
     shared_.commands.publish();
   }
-  /// Starts the controller if the bus reports no fault. Returns true if the controller has been started.
+  /// Starts the controller if the bus thread reports no fault and no failed exchange. Returns true if the
+  /// controller has been started.
   bool start() {
     shared_.bus.fetch();
     const control::BusHealth& health = shared_.bus.value().health;

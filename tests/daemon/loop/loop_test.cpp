@@ -201,7 +201,8 @@ TEST(LoopThread, MissedCyclesAreCountedAndReportedToTheController) {
   rig.settings.faults.overrun_cycles = 10;
   DaemonParts parts(std::move(rig), {});
   parts.bus.open();
-  // The schedule starts in the past, so the first tick is very late. All later ticks must be on time.
+  // The schedule starts 100 periods in the past, so the first tick is very late. The loop must skip the
+  // missed ticks.
   const Nanoseconds now = parts.clock.now();
   std::thread loop([&] { parts.loop.run(PeriodicSchedule(now - 100 * parts.period(), parts.period())); });
   sleep_until(now + 3 * parts.period());

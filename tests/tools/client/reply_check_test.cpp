@@ -100,8 +100,8 @@ TEST(ReplyCheck, RefusesMoreThan32NestingLevelsBeforeParsing) {
       << "brackets inside a string are text";
 }
 
-/// In a line of each kind, replaces each value by values of all other JSON types. Either the check must
-/// refuse the changed line, or each function that reads this kind of line must accept it.
+/// In a line of each kind, removes each value or replaces it by values of all JSON types. Either the check
+/// must refuse the changed line, or each function that reads this kind of line must accept it.
 TEST(ReplyCheck, EveryAcceptedReplyIsReadWithoutException) {
   std::size_t refused = 0;
   std::size_t passed = 0;

@@ -185,7 +185,8 @@ TEST(StatusView, ShowsConnectionAttemptsToABoardThatDoesNotRespond) {
   EXPECT_NE(line_of_status(away).find("board NOT CONNECTED"), std::string::npos);
 }
 
-/// Returns the text of a view with a width of `columns`. Replaces every sequence of blanks by one blank.
+/// Returns the text of a view with a width of `columns`. Replaces every sequence of blanks and line breaks by
+/// one blank.
 std::string words_at(std::size_t columns, const Json& shown) {
   std::string text;
   for (const char c : joined(view_of(shown, {columns, false, false}))) {
