@@ -31,7 +31,7 @@ TEST(Limits, TheCommandMovesToACeilingAtTheSlewLimit) {
   EXPECT_TRUE(capped.capped);
   EXPECT_FALSE(capped.saturated || capped.slewing);
   EXPECT_DOUBLE_EQ(limit(typical, 30, 30, 0.005, 20).command_kpa, 28)
-      << "the command falls by at most 400 kPa/s";
+      << "the command falls at a rate of at most 400 kPa/s";
   EXPECT_EQ(limit(typical, 30, 0, 1, -5).command_kpa, 0)
       << "the command is never below the permitted pressure range";
   EXPECT_FALSE(limit(typical, 24, 20, 0.05, 25).capped);

@@ -179,7 +179,7 @@ TEST(ModelHealth, ALargeResidualChangesTheStateToUnfitOnce) {
   EXPECT_NEAR(health.rms_mm(), 4, 1e-9);
   for (int i = 0; i < 1000; ++i) health.observe(2.5);
   EXPECT_EQ(health.state(), HealthState::unfit)
-      << "the model becomes healthy again only if the residual falls below 0.7 of the bound";
+      << "the model becomes healthy again only if the residual falls below 0.7 times unfit_mm";
   for (int i = 0; i < 40000; ++i) health.observe(0);
   EXPECT_EQ(health.state(), HealthState::healthy);
 }

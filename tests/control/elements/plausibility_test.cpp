@@ -63,7 +63,7 @@ TEST(Plausibility, AJumpIsInvalidUntilTheSpeedLimitPermitsTheMotion) {
   EXPECT_EQ(channel.next(6.4), Validity::valid)
       << "the permitted change of the reading is 200 mm/s for 5 ms plus the margin";
   EXPECT_EQ(channel.next(12), Validity::jumped);
-  EXPECT_EQ(channel.next(6.4), Validity::valid) << "a single spike is not a fault";
+  EXPECT_EQ(channel.next(6.4), Validity::valid) << "after a single spike, the next reading is valid";
   EXPECT_EQ(channel.next(12), Validity::jumped);
   int ticks = 1;
   while (channel.next(12) == Validity::jumped) ++ticks;

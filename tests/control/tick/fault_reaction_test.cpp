@@ -140,7 +140,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().first_fault.code, fault.code);
   const double at_latch_kpa = rig.output().channels[0].command_kpa;
   EXPECT_NEAR(at_latch_kpa, before_kpa, 10)
-      << "the command changed for at most a few cycles before the fault";
+      << "until the fault is latched, the command changes for at most a few cycles";
   if (phase.step >= 0) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }

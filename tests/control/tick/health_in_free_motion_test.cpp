@@ -75,7 +75,8 @@ TEST_F(HealthInFreeMotionTest, APartHeldAfterAFaultCausesNoHealthAlarm) {
   rig.request(Request::Kind::acknowledge);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "the finger is still pressed on the part";
-  ASSERT_NE(rig.result(0), GripResult::holding) << "no grip result reports that a part holds the finger";
+  ASSERT_NE(rig.result(0), GripResult::holding)
+      << "the grip result does not report that the finger holds a part";
   rig.run(30);
   EXPECT_FALSE(unfit(rig));
 }

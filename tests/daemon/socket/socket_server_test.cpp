@@ -389,7 +389,8 @@ TEST_F(SocketServerTest, RequestsWaitUntilTheClientReadsTheReplies) {
   for (int i = 0; i < 100; ++i) questions += "more\n";
   send_text(client, questions);
   turn(50);
-  EXPECT_EQ(server().clients(), 1U) << "for the slow client, the queue would be too long";
+  EXPECT_EQ(server().clients(), 1U)
+      << "most requests must wait, because the queue cannot hold all 100 replies";
   const std::size_t before = lines_.size();
   EXPECT_LT(before, 5U);
   for (int i = 0; i < 20; ++i) {

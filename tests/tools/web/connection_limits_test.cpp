@@ -88,7 +88,7 @@ TEST(ConnectionLimits, NoClientWithAHigherRoleIsReplaced) {
 
 TEST(UnsentBytes, FreesTheBytesOfTheMostIdleClientFirst) {
   EXPECT_FALSE(victim_for_memory({{Kind::long_lived, Role::look, 0, 0}}, Role::operate))
-      << "this client has no unread bytes";
+      << "the server has no unsent bytes for this client";
   EXPECT_FALSE(victim_for_memory({{Kind::long_lived, Role::operate, 0, 9}}, Role::look));
   const std::vector<ConnectionInfo> connections{{Kind::long_lived, Role::look, just, 9'000'000},
                                                 {Kind::long_lived, Role::look, long_ago, 1000},
