@@ -134,7 +134,7 @@ class Judge:
         path, _, anchor = target.partition("#")
         file = (document.parent / path).resolve() if path else document
         if not file.is_relative_to(ROOT) or str(file.relative_to(ROOT)) not in self.names:
-            self.findings.append(f"{place}: the link `{target}` leads nowhere")
+            self.findings.append(f"{place}: no file of the project has the path of the link `{target}`")
         elif anchor and anchor not in anchors_of(file.read_text()):
             self.findings.append(f"{place}: the link `{target}`: that page has no such heading")
 
@@ -145,7 +145,7 @@ class Judge:
         for number, heading in headings_of(text):
             if heading in seen:
                 place = f"{document.relative_to(ROOT)}:{number}"
-                self.findings.append(f"{place}: the heading `{heading}` stands in line {seen[heading]} already")
+                self.findings.append(f"{place}: the heading `{heading}` is already in line {seen[heading]}")
             seen.setdefault(heading, number)
 
     def document(self, document):
@@ -165,7 +165,7 @@ def main():
     judge = Judge(parser.parse_args().build)
     for document in documents():
         judge.document(document)
-    print("\n".join(judge.findings) or f"{len(documents())} documents name nothing that does not exist")
+    print("\n".join(judge.findings) or f"{len(documents())} documents: all named files, folders and headings exist")
     return 1 if judge.findings else 0
 
 

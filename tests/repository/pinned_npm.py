@@ -11,10 +11,10 @@ import tree
 
 
 def wrong(package, lock):
-    found = [f"{name} is asked for as {version}, not by one version"
+    found = [f"{name}: {version} is not one exact version"
              for name, version in package.get("dependencies", {}).items() if not re.fullmatch(r"\d+\.\d+\.\d+", version)]
     if lock["packages"][""].get("dependencies") != package.get("dependencies"):
-        found.append("the lock is of other dependencies")
+        found.append("the dependencies in the lock file differ from those in package.json")
     for path, locked in lock["packages"].items():
         if path and "integrity" not in locked:
             found.append(f"{path} has no hash")

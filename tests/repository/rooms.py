@@ -81,11 +81,11 @@ def main():
         for path in sorted({file.parent for file in (source / top).rglob("*.h")}):
             name = str(path.relative_to(source))
             if name not in home and name not in ("bench", "tools/programs"):
-                wrong.append(f"{name} is no room of cmake/rooms.cmake")
+                wrong.append(f"cmake/rooms.cmake has no room {name}")
     for folder, others, uses in rooms():
         needed = {home.get(one, one) for one in included_by([folder, *others])}
         for idle in [one for one in uses if one not in needed]:
-            wrong.append(f"cmake/rooms.cmake: {folder} may use {idle} and does not")
+            wrong.append(f"cmake/rooms.cmake: {folder} may use {idle}, but includes no header of it")
     text = page.read_text()
     before, rest = text.split(begin)
     now, after = rest.split(end)
@@ -94,11 +94,11 @@ def main():
     if "--write" in sys.argv:
         page.write_text(before + begin + wanted + end + after)
     elif now != wanted:
-        wrong.append("docs/explanation/architecture.md: the table of rooms is not what cmake/rooms.cmake says "
-                     "(tests/repository/rooms.py --write mends it)")
-    wrong += [f"docs/explanation/architecture.md does not say what {room} knows" for room, _, _ in rooms()
+        wrong.append("docs/explanation/architecture.md: the table of rooms differs from cmake/rooms.cmake "
+                     "(tests/repository/rooms.py --write updates it)")
+    wrong += [f"docs/explanation/architecture.md does not describe the content of {room}" for room, _, _ in rooms()
               if not known.get(room)]
-    print("\n".join(wrong) or f"{len(rooms())} rooms, all as the page says")
+    print("\n".join(wrong) or f"{len(rooms())} rooms agree with docs/explanation/architecture.md")
     return 1 if wrong else 0
 
 

@@ -18,7 +18,7 @@ def main():
     for name in tests:
         stem = pathlib.Path(name).stem
         if not re.search(rf"^namespace softgrip(::\w+)*::{stem} \{{$", (ROOT / name).read_text(), re.MULTILINE):
-            lacking.append(f"{name}: its names stand outside a namespace softgrip::...::{stem}")
+            lacking.append(f"{name} has no namespace softgrip::...::{stem}")
     print("\n".join(lacking) or f"{len(tests)} tests")
     return 1 if lacking or not tests else 0
 

@@ -30,9 +30,10 @@ def main():
     tested = reached(names)
     listed = {line for line in LIST.read_text().split("\n") if line and not line.startswith("#")}
 
-    findings = [f"{name}: no test includes it, nor a header that does" for name in sorted(headers - tested - listed)]
-    findings += [f"{name}: is in {LIST.name}, and a test reaches it" for name in sorted(listed & tested)]
-    findings += [f"{name}: is in {LIST.name}, and there is no such header" for name in sorted(listed - headers)]
+    findings = [f"{name}: no test includes this header directly or through another header"
+                for name in sorted(headers - tested - listed)]
+    findings += [f"{name}: is in {LIST.name}, but a test includes it" for name in sorted(listed & tested)]
+    findings += [f"{name}: is in {LIST.name}, but there is no such header" for name in sorted(listed - headers)]
     print("\n".join(findings) or f"tests reach {len(headers) - len(listed)} of {len(headers)} headers")
     return 1 if findings else 0
 
