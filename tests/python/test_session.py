@@ -57,7 +57,7 @@ class Story(unittest.TestCase):
         self.assertIsNone(told.reached(softgrip.Result.RELEASED))
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         told.tell("overall_result", "RELEASED")
-        self.assertIsNone(told.reached(softgrip.Result.HOLDING), "this hold was received and is over")
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING), "the hold that was received has ended")
         told.tell("overall_result", "HOLDING")
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         told.tell("sequence_finished", "done")
@@ -133,7 +133,7 @@ class Story(unittest.TestCase):
         self.assertTrue(told.session.starts)
         told.session.subscribed({"since": 0, "started_at": "second"})
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAULTED)
-        self.assertFalse(told.session.starts, "what ran has ended with the daemon before")
+        self.assertFalse(told.session.starts, "the sequence must have ended with the previous daemon")
 
     def test_equal_request_numbers_of_two_daemons_are_not_confused(self):
         told = Events()
