@@ -238,14 +238,14 @@ def main():
         for from_then_on in (False, True) if what != "real" and call in ("write", "open") else (False,):
             scenario = Scenario()
             began = time.monotonic()
-            failed, end = 0, "until a run got through"
+            failed, end = 0, "until a run succeeded"
             try:
                 for nth in numbers(call, 100000):
                     if not getattr(scenario, what)(call, nth, from_then_on):
                         break
                     failed += 1
                     if time.monotonic() - began > arguments.minutes_each * 60:
-                        end = f"cut short at the {nth}th"
+                        end = f"stopped by the time limit at call {nth}"
                         break
             except AssertionError as error:
                 wrong += 1
@@ -253,7 +253,7 @@ def main():
             finally:
                 scenario.close()
             if scenario.aborted:
-                end += f"; {scenario.aborted} of them ended it in a destructor"
+                end += f"; {scenario.aborted} of these failures ended the program in a destructor"
             print(f"{what:9} {call:12}{'and all later' if from_then_on else '':14} {failed:4} calls failed, {end}", flush=True)
     return 6 if wrong else 0
 

@@ -209,16 +209,15 @@ class Cell:
             self.lines = digital_lines.Lines(self.folder)
 
     def clear_emergency_stop(self):
-        """Resets the emergency stop. After its start, the daemon treats the emergency stop as pressed until this
-        reset."""
+        """Acknowledges the fault of the emergency stop, which the daemon latches at its start."""
         self.daemon.wait_for_state("faulted")
         bench.wait_for("an acknowledged start", lambda: self.daemon.ask("acknowledge")["ok"], pause_s=0.05)
         bench.wait_for("the enable output", lambda: "ENABLE" in self.lines.on())
         self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
-        """Computes time.monotonic() at the daemon's time 0. A status can be one tick old, so the function computes
-        the time from 20 statuses and returns the smallest value."""
+        """Sets `origin` to time.monotonic() at the daemon's time 0. A status can be one tick old, so `origin` is the
+        smallest of the values from 20 statuses."""
         self.origin = math.inf
         for n in range(20):
             now_s = self.daemon.status()["time_s"]
@@ -487,9 +486,10 @@ class Cell:
 
 
 def hurry(yes):
-    """Raises the priority of this process, if this user has the permission. The process simulates a wire, and a wire
-    is not delayed by other work of the machine. The process sleeps most of the time. Child processes start with the
-    normal priority, because the test checks the priorities that they set."""
+    """Sets a real-time priority for this process if `yes` is true, or else the normal priority. Has no effect without
+    the permission. The process simulates a wire, and other work of the machine does not delay a wire. The process
+    sleeps most of the time. Child processes start with the normal priority, because the test checks the priorities
+    that they set."""
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(30 if yes else 0))
 

@@ -21,7 +21,7 @@ class Content:
 
     def bytes(self, kind="I"):
         length = self.number(kind)
-        assert self.at + length <= len(self.data), "a text ends behind its record"
+        assert self.at + length <= len(self.data), "a text ends after the end of its record"
         self.at += length
         return self.data[self.at - length:self.at]
 
@@ -46,7 +46,7 @@ def records(data, begin, end):
         opcode, length = struct.unpack_from("<BQ", data, at)
         yield opcode, Content(data[at + 9:at + 9 + length]), at
         at += 9 + length
-    assert at == end, "a record ends behind its section"
+    assert at == end, "the last record ends after the end of its section"
 
 
 def read(path):
@@ -121,13 +121,15 @@ def check_summary(data, start, offsets_start, end, chunks, indexes, messages, ch
             chunk_indexes += 1
             content.number("Q"), content.number("Q")
             chunk_at, length = content.number("Q"), content.number("Q")
-            assert chunk_at in chunks and length == 9 + len(chunks[chunk_at].data), "an index points beside its chunk"
+            assert chunk_at in chunks and length == 9 + len(chunks[chunk_at].data), \
+                "an index does not point to its chunk"
             for channel, index_at in content.pairs("H", "Q"):
                 assert indexes[index_at][0] == channel
                 records_at = chunk_at + length - len(Content(chunks[chunk_at].data[32:]).bytes("Q"))
                 for time_ns, offset in indexes[index_at][1]:
                     opcode_here, _, said, _, time_here, _ = struct.unpack_from("<BQHIQQ", data, records_at + offset)
-                    assert (opcode_here, said, time_here) == (0x05, channel, time_ns), "an index points beside a message"
+                    assert (opcode_here, said, time_here) == (0x05, channel, time_ns), \
+                        "an index does not point to a message"
     (count, _, channel_count, _, _, chunk_count, first_ns, last_ns), by_channel = statistics
     assert count == len(messages) == sum(by_channel.values()) and channel_count == len(channels)
     assert chunk_count == chunk_indexes == len(chunks)

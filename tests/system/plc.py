@@ -93,7 +93,7 @@ class Master:
     def synchronise(self):
         """Waits until no command is in progress, and then reads the counter value of the gateway. Does not send
         a command."""
-        bench.wait_for("the end of what is under way", lambda: self.read("outcome") != 1)
+        bench.wait_for("the end of the command in progress", lambda: self.read("outcome") != 1)
         self.counter = self.read("done_counter")
         self.write("command_counter", self.counter, 0)
 

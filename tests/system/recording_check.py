@@ -86,7 +86,7 @@ class Recording:
     # --- Checks that the recording is complete
 
     def check_whole(self):
-        """Checks that every tick has one row for each channel, in the same order. Also checks that the times
+        """Checks that every recorded tick has one row for each channel, in the same order. Also checks that the times
         increase, and that the number of rows is the number in run.json."""
         for index, row in enumerate(self.rows):
             if row["channel"] != self.names[index % len(self.names)]:
@@ -98,7 +98,7 @@ class Recording:
                 self.says(row, f"its time follows {before['time_s']}")
                 return
         if self.about["state"] == "complete" and self.about["rows"] != len(self.rows):
-            self.wrong.append(f"{self.folder.name}: {len(self.rows)} rows, run.json says {self.about['rows']}")
+            self.wrong.append(f"{self.folder.name}: {len(self.rows)} rows, but run.json says {self.about['rows']}")
 
     # --- Checks of the outputs
 
@@ -112,8 +112,9 @@ class Recording:
                 self.says(row, f"{command} kPa is out of the range of its limits")
 
     def check_step(self, name, before, row):
-        """Checks two successive ticks. The state may change as NEXT permits, and in no other way. During a sequence, a
-        command may move away from rest within the slew limit. Outside a sequence, it must not move away from rest."""
+        """Checks two successive recorded ticks. The state may change as NEXT permits, and in no other way. During a
+        sequence, a command may move away from rest within the slew limit. Outside a sequence, it must not move away
+        from rest."""
         if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
             self.says(row, f"{before['state']} is followed by {row['state']}")
         for side, slew in ((1, "slew_up_kpa_per_s"), (-1, "slew_down_kpa_per_s")):
@@ -123,8 +124,8 @@ class Recording:
             if row["state"] not in MAY_RISE:
                 self.says(row, f"the command moves away from rest by {change:.6f} kPa while {row['state']}")
             if name in self.limits and change > self.allowed(name, slew) + CELL:
-                self.says(row, f"the command leaves rest by {change:.6f} kPa in a tick, "
-                               f"{self.allowed(name, slew):.6f} are its slew")
+                self.says(row, f"the command leaves rest by {change:.6f} kPa from one row to the next, "
+                               f"but the slew limit permits {self.allowed(name, slew):.6f} kPa")
 
     def check_return(self, name, before, row, last):
         """Checks that the return to rest stays within the slew limit. Exceptions are the safe outputs during a fault
@@ -134,8 +135,8 @@ class Recording:
         for side, slew in ((1, "slew_down_kpa_per_s"), (-1, "slew_up_kpa_per_s")):
             change = self.away(name, before, side) - self.away(name, row, side)
             if change > self.allowed(name, slew) + CELL:
-                self.says(row, f"the command returns to rest by {change:.6f} kPa in a tick, "
-                               f"{self.allowed(name, slew):.6f} are its slew")
+                self.says(row, f"the command returns to rest by {change:.6f} kPa from one row to the next, "
+                               f"but the slew limit permits {self.allowed(name, slew):.6f} kPa")
 
     def away(self, name, row, side):
         """Returns the distance of a command from the rest pressure. Commands above the rest pressure count as

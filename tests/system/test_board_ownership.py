@@ -101,7 +101,7 @@ class OtherUsers(bench.BenchTest):
     """Tests a board without a watchdog while another user of the machine occupies the name with which a program locks
     the board."""
 
-    HOLDERS = {"listens": 5, "lets nobody in": 0, "does not listen": None}
+    HOLDERS = {"listens": 5, "accepts no connection": 0, "does not listen": None}
 
     def setUp(self):
         super().setUp()

@@ -49,8 +49,7 @@ FILE_COMMANDS = {
                            f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
                            "--out {out}/found", "log.csv", "found/investigation.json"),
 }
-# Commands that send requests to the daemon. For each command, the state of the daemon that the command needs. The order
-# of the commands allows one daemon to answer all of them.
+# Commands that send requests to the daemon. One daemon answers all of them in this order.
 CLIENTS = {
     "status": Command("status"),
     "sequences": Command("sequences"),

@@ -392,7 +392,7 @@ actuator:
             "asymmetric_valve_lag: {filling_time_constant_s: 0.003, venting_time_constant_s: 0.005}",
             "chamber_lag: {filling_time_constant_s: 0.004, venting_time_constant_s: 0.003}",
             "transport_delay: {delay_s: 0.25}"))
-        # At each sample, the command turns round, and each lag divides the segments of the lag before it.
+        # The command reverses at each sample, and each lag splits the segments that the preceding lag passes to it.
         self.compare(model, [20.0 + 15 * (i % 2) for i in range(4 * RATE_HZ)] + [50.0] * RATE_HZ)
 
     def test_the_c_inverse_cancels_an_actuator_within_1e_9_mm(self):

@@ -21,8 +21,7 @@ class Gentle(bench.BenchTest):
 
     def squeezed_kpa(self, truth):
         """Returns the largest gripping pressure. It is the pressure minus the pressure that the free finger needs for
-        the same displacement. The part is rigid, so only samples at the position of
-        the part are evaluated."""
+        the same displacement. The part is rigid, so only samples at the position of the part are evaluated."""
         with open(truth, newline="") as file:
             rows = [row for row in csv.DictReader(file) if float(row["displacement_mm"]) > self.at_mm - 0.05]
         self.assertTrue(rows)

@@ -30,7 +30,7 @@ class Terminal:
         end = time.monotonic() + bench.PATIENCE_S
         while not done():
             if time.monotonic() > end:
-                raise AssertionError(f"it says no more than:\n{self.said}")
+                raise AssertionError(f"the program has not printed the expected question, only:\n{self.said}")
             ready, _, _ = select.select([self.master], [], [], 0.1)
             if not ready:
                 continue

@@ -38,11 +38,11 @@ class Investigation(bench.BenchTest):
             count = RATE_HZ * (end - begin)
             rows += [f"{begin + i / RATE_HZ:.2f},{low + (high - low) * i / count:.6g}" for i in range(count)]
         self.write("load.csv", "\n".join(rows) + "\n")
-        self.assertTrue(any(map(self.asks, NOISES)), "for none of these logs an experiment is suggested")
+        self.assertTrue(any(map(self.asks, NOISES)), "diagnose suggests no experiment for any of these logs")
 
     def asks(self, seed):
-        """Writes log.csv with this noise. Several causes explain this log equally well. Returns True if a short
-        experiment can separate them."""
+        """Writes log.csv with the noise of this seed. Several causes explain this log equally well. Returns True if a
+        short experiment can separate them."""
         self.softgrip("simulate", "--model", FINGER, "--input", "load.csv", "--out", "log.csv", "--noise-mm", NOISE_MM,
                       "--seed", seed)
         told = json.loads(self.softgrip("diagnose", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out",
@@ -88,7 +88,7 @@ class Investigation(bench.BenchTest):
         rig = self.emulator("--model", self.folder / FINGER, "--object", "stone")
         self.check(self.investigated("--rig", self.rig(rig.port), "--rig-channel", "left", "--yes"), "contact",
                    "the finger touched an object")
-        self.assertLess(max(rig.pressures_kpa()), 5, "and it is vented")
+        self.assertLess(max(rig.pressures_kpa()), 5, "the rig must be vented")
 
     def test_a_rig_that_deviates_from_the_command_ends_the_investigation(self):
         for change, why in (("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",

@@ -149,7 +149,8 @@ class Silent(MotionTest):
         """Tests a connection on which the requests arrive and the replies are lost. The board keeps its outputs. They
         may stay at the last command but must not rise."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
-        self.assertLess(max(sample[0] for sample in samples), highest + 2, "at most one step of a cycle plus the noise")
+        self.assertLess(max(sample[0] for sample in samples), highest + 2,
+                        "the command must rise by at most one cycle's step plus the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)
 
 

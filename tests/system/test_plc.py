@@ -238,7 +238,7 @@ class Gateway(bench.BenchTest):
                 return other.recv(1) == b""
             except TimeoutError:
                 return False
-        bench.wait_for("the end of one that says nothing", others_place)
+        bench.wait_for("the end of the silent connection", others_place)
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
 
     def test_a_client_can_replace_its_dead_connections(self):

@@ -130,7 +130,7 @@ class BlockExit(quiet_rig.QuietRigTest):
                 for request in self.starts()[len(before):]:
                     self.assertEqual(self.wait_until_ended(request), "stopped")
                 time.sleep(0.2)
-                self.assertIsNone(self.running(), "the sequence began later")
+                self.assertIsNone(self.running(), "a stopped sequence must not begin later")
 
     def test_a_sequence_is_stopped_after_a_closed_connection(self):
         proxy = self.proxy()
@@ -156,7 +156,7 @@ class BlockExit(quiet_rig.QuietRigTest):
             proxy.refuses = True
             proxy.cut()
         self.assertIn("softgrip stop", str(raised.exception))
-        self.assertEqual(self.running(), request, "no stop was possible, so there is an exception")
+        self.assertEqual(self.running(), request, "the sequence must still run, because no stop was possible")
 
     def test_an_explicit_close_lets_the_sequence_continue(self):
         with self.gripper() as robot:

@@ -60,7 +60,7 @@ class Line(bench.BenchTest):
         daemon = self.daemon(rig)
         daemon.wait_for_state("idle")
         emulator.ask("fault unplugged")
-        bench.wait_for("the name to go", lambda: not (self.folder / "line").is_symlink())
+        bench.wait_for("the removal of the device name", lambda: not (self.folder / "line").is_symlink())
         daemon.wait_for_state("faulted")
         emulator.ask("clear unplugged")
         daemon.wait_for_event("bus_recovered")
@@ -108,7 +108,8 @@ class MbpollOnTheLine(bench.BenchTest):
         done = self.poll("-a", 2, "-t", 3, "-r", 0, "-c", 2, device)
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
         left, right = (int(v) for v in re.findall(r"\]:\s+(\d+)", done.stdout))
-        self.assertGreater(left, right + 500, "millivolts: 40 kPa moves farther than 20 kPa")
+        self.assertGreater(left, right + 500,
+                           "the reading at 40 kPa must exceed the reading at 20 kPa by more than 500 mV")
         done = self.poll("-a", 2, "-t", 3, "-r", 8, "-c", 1, device)
         self.assertNotEqual(done.returncode, 0, "the input does not exist")
         self.assertIn("Illegal data address", done.stdout + done.stderr)

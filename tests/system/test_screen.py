@@ -32,7 +32,8 @@ class Screen(bench.BenchTest):
             self.assertIn("UNDER PRESSURE", self.softgrip(*command).stdout)
         self.softgrip("release")
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
-        bench.wait_for("the end of it", lambda: self.softgripd.status()["under_pressure"] is None)
+        bench.wait_for("the end of the warning about pressure",
+                       lambda: self.softgripd.status()["under_pressure"] is None)
         self.assertNotIn("UNDER PRESSURE", self.softgrip("status").stdout)
 
     def test_a_fault_is_shown_with_finger_cause_and_remedy(self):

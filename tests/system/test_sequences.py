@@ -36,7 +36,8 @@ class WithoutADaemon(bench.BenchTest):
         started = next(event for event in asked["events"] if event["kind"] == "sequence_started")
         self.assertEqual(started["parameters"], {"squeeze_kpa": 4, "hold_s": 0.5})
         self.assertIn("begins with squeeze_kpa 4, hold_s 0.5.", started["text"])
-        self.assertLess(asked["duration_s"], plain["duration_s"] - 4, "with the shorter time the sequence ends earlier")
+        self.assertLess(asked["duration_s"], plain["duration_s"] - 4,
+                        "the sequence must be shorter with the shorter hold_s")
 
     def test_invalid_parameters_are_rejected_before_the_run(self):
         def refused(*settings, expect=3):
@@ -84,7 +85,7 @@ class WithoutADaemon(bench.BenchTest):
         done = self.softgrip("run", PICK, "--virtual-time", "--record", "r")
         self.assertNotIn("softgripd", done.stderr)
         self.assertIn("softgrip run 0.", done.stderr)
-        self.assertNotIn("none_yet", done.stdout, "the first reading is no warning")
+        self.assertNotIn("none_yet", done.stdout, "a missing first reading must cause no warning")
 
     def test_the_completion_scripts_offer_all_commands(self):
         script = self.write("completion.bash", self.softgrip("completion", "bash").stdout)

@@ -34,7 +34,7 @@ class Client:
     def line(self):
         text = self.input.readline()
         if not text:
-            raise AssertionError("the daemon hung up")
+            raise AssertionError("the daemon closed the connection")
         line = json.loads(text)
         if "ok" not in line:
             api_schema.check(line)

@@ -57,7 +57,7 @@ class FirstRun(bench.BenchTest):
         return done.stdout
 
     def status(self):
-        """Returns the status of the daemon. Returns None if the daemon does not listen yet."""
+        """Returns the status of the daemon. Returns {} if the daemon does not answer."""
         done = subprocess.run([bench.SOFTGRIP, "status", "--json"], cwd=self.folder, text=True, capture_output=True,
                               env=self.environment)
         return json.loads(done.stdout) if done.returncode == 0 else {}
@@ -84,7 +84,7 @@ class FirstRun(bench.BenchTest):
         bench.wait_for("the rig", lambda: "listening" in rig.output())
         bench.wait_for("the session", lambda: "Communication with the board restored" in self.shell("softgrip events"))
         time.sleep(1)  # a user needs at least this time to type the next command
-        self.assertEqual(self.state(), "faulted", "nothing moves before somebody says so")
+        self.assertEqual(self.state(), "faulted", "a new connection must not clear the fault")
         self.shell("softgrip acknowledge")
         self.wait_for_state("idle")
 

@@ -257,7 +257,8 @@ class VentsUnderAttack(bench.BenchTest):
         refuse(20)
         before = self.daemon_.resident_kib()
         refuse(60)
-        self.assertLess(self.daemon_.resident_kib() - before, 60 * 50, "60 KiB of text each, 206 KiB as a sequence")
+        self.assertLess(self.daemon_.resident_kib() - before, 60 * 50,
+                        "a refused start must not keep the 60 KiB of its text, or its sequence of 206 KiB")
 
 
 class Ending(bench.BenchTest):

@@ -43,7 +43,7 @@ class Watch(bench.BenchTest):
         watched.wait_for("started hand_over")
         watched.wait_for("HOLDING by")
         screen = watched.wait_for("left: Grip result: HOLDING.")
-        self.assertIn("▁", screen, "a trend")
+        self.assertIn("▁", screen, "the screen must show a trend")
         watched.type("s")
         screen = watched.wait_for("UNDER PRESSURE")
         self.assertIn("`softgrip release`", screen)

@@ -179,7 +179,7 @@ class Limits(web.WebTest):
                 stuck.touch()
                 pending = [self.send(told, path) for _ in range(6)]
                 waits = pathlib.Path(f"{stuck}.waits")
-                bench.wait_for("the disk to be asked", waits.exists)
+                bench.wait_for("a request to the disk", waits.exists)
                 self.assert_heard(told)
                 self.assertEqual(told.metrics()["softgrip_health_timestamp_seconds"], 7,
                                  "the metric must keep the last value that was read")
@@ -213,7 +213,7 @@ class Limits(web.WebTest):
         time.sleep(1)
         before = processor_s(told.child.pid)
         time.sleep(4)
-        self.assertLess(processor_s(told.child.pid) - before, 0.4, "of 4 s")
+        self.assertLess(processor_s(told.child.pid) - before, 0.4, "processor time in 4 s")
         self.assertIn(b"event: state", page.recv(1 << 20), "an open page must continue")
         self.assert_heard(told)  # the server closes connections that send no request, so it must answer this request
 
@@ -223,7 +223,7 @@ class Limits(web.WebTest):
         for page in pages:
             self.assertTrue(page.recv(100).startswith(b"HTTP/1.1 200"))
         resource.prlimit(told.child.pid, resource.RLIMIT_NOFILE, (30, 30))
-        bench.wait_for("the pages to go", lambda: len(os.listdir(f"/proc/{told.child.pid}/fd")) < 30)
+        bench.wait_for("the server to close pages", lambda: len(os.listdir(f"/proc/{told.child.pid}/fd")) < 30)
         self.assert_heard(told)
 
     def test_the_descriptor_limit_reduces_the_number_of_connections(self):

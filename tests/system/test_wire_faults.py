@@ -46,7 +46,7 @@ class WireFaults(bench.BenchTest):
             with self.subTest(kind):
                 before = self.softgripd.result("statistics")["bus"]["exchanges"]
                 self.emulated.ask(f"fault {kind}_once")
-                bench.wait_for("good exchanges after it",
+                bench.wait_for("successful exchanges after the fault",
                                lambda: self.softgripd.result("statistics")["bus"]["exchanges"] > before + 10)
                 self.fresh_readings()
                 self.assertEqual(self.softgripd.status()["state"], "idle", self.softgripd.errors())

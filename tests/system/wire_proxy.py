@@ -295,7 +295,7 @@ def corrupted_header(session, fault, request):
 
 
 def changed_words(session, fault, request, change):
-    """Forwards the reply to a read of the inputs. Before, `change` changes the register values of the reply."""
+    """Forwards the reply. If the request reads the inputs, `change` first changes the register values of the reply."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():

@@ -65,7 +65,7 @@ class Rig:
         return self.recordings / f"{grip.at.replace(':', '-')}_{grip.sequence}"
 
     def has(self, grip):
-        """Runs a sequence. Returns True if the sequence was played completely."""
+        """Returns True if play() has already recorded this grip completely."""
         story = self._run_of(grip) / "run.json"
         return story.exists() and "started_at" in json.loads(story.read_text())
 

@@ -236,7 +236,7 @@ def rights_removed(state):
         wall = time.time()
         service.start_fresh(state["emulator"])
         real_time = service.status()["real_time"]
-        expect(real_time["degraded"], "not said to be degraded")
+        expect(real_time["degraded"], "the status does not report the degradation")
         failed = [step["name"] for step in real_time["steps"] if step["outcome"] == "failed"]
         journal = service.journal(wall - 1)
         expect("real time: DEGRADED" in journal, "not in the journal")
@@ -251,7 +251,7 @@ def rights_removed(state):
         edit(RIG, (r"real_time: \{required: \w+", "real_time: {required: false"))
         drop_in("")
     service.start_fresh(state["emulator"])
-    expect(not service.status()["real_time"]["degraded"], "still degraded with the rights given back")
+    expect(not service.status()["real_time"]["degraded"], "still degraded although the rights are restored")
     return f"degraded said ({', '.join(failed)}); refused when required; whole again with the rights"
 
 
