@@ -110,9 +110,9 @@ model::Model perturbed(double share, std::uint64_t seed) {
   model::Model model = twin();
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
-      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // leave the exponent of the model
-                                                                            // unchanged, because it is the
-                                                                            // only whole number below 10
+      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent, which is the only
+                                                                            // whole number below 10, must
+                                                                            // stay unchanged
     }
   }
   return model;

@@ -105,8 +105,8 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
   }
 }
 
-// Although successive residuals are correlated, the measured false-alarm rate must equal the rate in the
-// settings.
+// Although successive residuals are correlated, the mean time between false alarms must equal the time in the
+// settings within 10 %.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
   ModelHealthSettings settings = short_intervals();
   settings.false_alarm_interval_s = 100;  // 200 intervals of interval_s: short enough that the test can

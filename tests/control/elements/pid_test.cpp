@@ -21,9 +21,9 @@ struct Finger {
   void step(double command_kpa) { y_mm += (0.4 * command_kpa - y_mm) * -std::expm1(-tick_s / 0.3); }
 };
 
-// Returns the time [s] until the finger stays within 0.3 mm of a reachable reference. An unreachable
-// reference is active for `saturated_s` before the reachable one. The feedforward command is
-// `feedforward_share` times the steady-state pressure for the active reference.
+// Returns the time [s] from the change to a reachable reference until the finger stays within 0.3 mm of this
+// reference. An unreachable reference is active for `saturated_s` before the change. The feedforward command
+// is `feedforward_share` times the steady-state pressure for the active reference.
 double recovery_s(AntiWindup anti_windup, double feedforward_share, double saturated_s,
                   const LimitSettings& limits) {
   PidSettings settings = typical;
@@ -35,7 +35,8 @@ double recovery_s(AntiWindup anti_windup, double feedforward_share, double satur
   pid.align(0);
   const int saturated = static_cast<int>(saturated_s / tick_s);
   for (int i = 0; i < saturated + 12000; ++i) {
-    const double reference = i < saturated ? 40 : 16;  // 40 mm are unreachable: they would need 100 kPa
+    // 40 mm need 100 kPa, which the limits do not permit within saturated_s.
+    const double reference = i < saturated ? 40 : 16;
     const double feedforward = feedforward_share * reference / 0.4;
     const double request = feedforward + pid.step(reference, finger.y_mm, feedforward);
     command = limit(limits, request, command, tick_s).command_kpa;

@@ -143,8 +143,8 @@ TEST(Invertibility, ARefusalNamesTheMissingBlock) {
   EXPECT_FALSE(check(valve_only, FeedforwardKind::full_model));
 }
 
-// Tests each block of the catalogue that is located between command and displacement. The feedforward must
-// either invert the block or refuse the model with a message that names the block.
+// Adds each block of the catalogue that the model lacks. The feedforward may accept the model only if it can
+// invert or ignore the block. A refusal must name the block, unless the block has an implicit inverse.
 TEST(Invertibility, EveryBlockIsInvertedOrNamedInTheRefusal) {
   const model::Model twin = model_named("bench_twin");
   for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
