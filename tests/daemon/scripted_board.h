@@ -25,9 +25,9 @@ class ScriptedBoard final : public drivers::Board {
   bool readers_feed = false;
   unsigned counted_clients = 0;
   const char* said = "scripted";
-  double found = std::numeric_limits<double>::quiet_NaN();  ///< outputs that the board reports after a
-                                                            ///< refused write [kPa]
-  std::function<void()> on_connect;                         ///< function to call during each connect()
+  double found =
+      std::numeric_limits<double>::quiet_NaN();  ///< value that found_kpa() returns for every channel [kPa]
+  std::function<void()> on_connect;              ///< function to call during each connect()
   std::function<void()> on_exchange;  ///< function to call before the request of an exchange reaches the
                                       ///< board
   std::vector<Nanoseconds> connect_attempts;  ///< times at which connect() was called

@@ -170,7 +170,7 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  // After the last event of the path, controller, bus and board must agree within a few cycles.
+  // After the last event of the path, controller, bus and board must agree within six cycles.
   for (int i = 0; i < 6; ++i) {
     controller.tick();
     if (!controller.runs) may_rise = false;

@@ -404,7 +404,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
 
   terminals_.set(GpioRole::emergency_stop, false);
   ASSERT_TRUE(eventually([&] { return ask("acknowledge")["ok"] == true; }));
-  ASSERT_TRUE(until_state("idle")) << "the rig must remain idle";
+  ASSERT_TRUE(until_state("idle")) << "the rig must become idle after the acknowledgement";
   end();
   EXPECT_TRUE(outcome_.safe_state_confirmed);
   EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "the enable output is off after the end of the daemon";

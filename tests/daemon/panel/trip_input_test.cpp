@@ -109,9 +109,9 @@ TEST(TripInput, AReleaseEdgeWithoutAPressEdgeDoesNotTrip) {
   EXPECT_GT(input.due(), 1'000'000 * ms);
 }
 
-/// Checks two statements of the header trip_input.h with random contact signals. A disturbance that is
-/// shorter than the debounce time never trips the input if the contact is quiet afterwards. If the contact
-/// does not become quiet, the input trips in time.
+/// Checks the bounds that trip_input.h states with random contact signals. The input must have tripped at the
+/// end of an uninterrupted press of at least the debounce time. Shorter presses must not trip it before the
+/// contact has bounced for twice the debounce time.
 TEST(TripInput, KeepsTheDebounceBoundsOnRandomContacts) {
   constexpr std::uint64_t seed = 20261120;
   std::mt19937_64 random(seed);
