@@ -1,5 +1,5 @@
-// Tests the serial link with a module that shows every possible fault. Each test states the expected status
-// and the longest duration of the call. After the fault, a new session must read the correct values.
+// Tests the serial link with a module whose responses are late, incomplete, corrupted or missing. After a
+// faulty response, the link must read the correct values again.
 
 #include "drivers/modbus/modbus_rtu_link.h"
 
@@ -74,8 +74,9 @@ struct Outcome {
   std::string detail;
 };
 
-/// Sends one request, to which `misbehave` responds. Then opens a session with a correct module. Returns the
-/// outcome of the first request.
+/// Sends one request, to which `misbehave` responds. Then checks that the next request reads the correct
+/// values; for this, opens a new session if the first request has ended the session. Returns the outcome of
+/// the first request.
 Outcome ask_once(const std::function<void(ScriptedLine&, const Bytes&)>& misbehave,
                  SerialLine settings = line_at("")) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -272,7 +273,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondResponseIgnored) {
     ASSERT_EQ(link.ask(1, {.function = 4, .address = 9, .count = 2}, now() + generous), BusStatus::ok)
         << link.detail();
     EXPECT_EQ(word_at(link.data(), 0), 1009)
-        << "the data are not those of the second response to the previous request";
+        << "the data must not come from the second response to the previous request";
     EXPECT_TRUE(link.is_open());
   }
 }

@@ -1,5 +1,5 @@
-// Tests a session with a server that shows every possible fault. Each test states the expected status and the
-// longest duration of the call.
+// Tests a session with a server whose responses are late, incomplete, wrong or missing, and whose connections
+// fail.
 
 #include "drivers/modbus/modbus_tcp_link.h"
 
@@ -75,8 +75,8 @@ struct Outcome {
 };
 
 /// Sends one request. `misbehave` sends the first response of the server; all later responses are correct.
-/// Then opens a new session and checks that it reads the correct values. Returns the outcome of the first
-/// request.
+/// Then checks that the next request reads the correct values; for this, opens a new session if the first
+/// request has ended the session. Returns the outcome of the first request.
 Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
                  const ModbusRequest& request = read_four, Nanoseconds within = deadline) {
   ScriptedServer server([&](Peer& peer, const Bytes& asked, std::size_t index) {
