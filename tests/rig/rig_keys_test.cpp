@@ -20,7 +20,7 @@ namespace {
 using document::Node;
 using Names = std::vector<std::string>;
 
-/// The tables with the keys of each map, by the key of the map.
+/// The tables of rig_tables() that list the keys of a map, by the key whose value is this map.
 const std::map<std::string, Names> tables_of_maps{
     {"rig", {"rig"}},
     {"modbus_tcp", {"modbus_tcp", "timing"}},
