@@ -31,8 +31,8 @@ constexpr double speed_kpa_per_s = 12;
 /// Largest difference between two pressures that differ only by rounding [kPa].
 constexpr double equal_kpa = 1e-9;
 
-/// A clock that advances only during sleeps. The first sleep after the time `pause_at` takes longer by
-/// `pause`, as if the process had been paused.
+/// A clock that advances only in sleep_until() and pass(). The first sleep that ends at or after `pause_at`
+/// takes longer by `pause`, as if the process had been paused.
 class StoppableClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
