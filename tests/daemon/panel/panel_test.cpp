@@ -169,7 +169,7 @@ TEST_F(PanelTest, HeldPressureMakesTheActiveLampBlink) {
     const std::vector<bool> written = terminals_.written(role);
     return std::count(written.begin() + static_cast<std::ptrdiff_t>(before), written.end(), true);
   };
-  EXPECT_EQ(lit(GpioRole::ready_lamp), 0) << "the lamp remains on";
+  EXPECT_EQ(lit(GpioRole::ready_lamp), 0) << "the ready lamp must not flash";
   EXPECT_TRUE(is_on(GpioRole::ready_lamp));
   shared_.under_pressure.store(true);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::ready_lamp)), 3.5, 1);

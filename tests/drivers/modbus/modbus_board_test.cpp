@@ -92,7 +92,7 @@ TEST_F(ModbusBoardTest, Function23NeedsOneTransaction) {
   });
   ASSERT_EQ(exchange(12.5, 50), BusStatus::ok) << board_->detail();
   const Requests requests = server_.take_requests();
-  // At the beginning of a session, the driver reads the state of the watchdog once and clears a trip.
+  // In the first exchange of a session, a second request reads if the watchdog has tripped.
   ASSERT_EQ(requests.size(), 2U);
   EXPECT_EQ(requests[0].function, 23);
   EXPECT_EQ(requests[0].write_address, 256);

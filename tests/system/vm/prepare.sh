@@ -44,7 +44,8 @@ build_gpio() {
     '*/drivers/gpio/gpiolib.h' '*/kernel/irq/irq_sim.c'
   cp "$work/source/drivers/gpio/gpiolib.h" "$build/"
   cp "$work/source/drivers/gpio/gpio-sim.c" "$build/lines.c"
-  # The kernel does not export irq_to_desc() to modules. generic_handle_irq() is exported and does the same.
+  # The kernel does not export irq_to_desc() to modules. The exported function generic_handle_irq() also handles the
+  # interrupt.
   sed 's/handle_simple_irq(irq_to_desc(\(.*\)));/generic_handle_irq(\1);/' "$work/source/kernel/irq/irq_sim.c" \
     >"$build/interrupts.c"
   printf 'obj-m := gpio-sim.o\ngpio-sim-objs := lines.o interrupts.o\n' >"$build/Kbuild"

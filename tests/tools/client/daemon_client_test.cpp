@@ -182,7 +182,7 @@ TEST(DaemonLink, PassesAllLinesReceivedBeforeTheConnectionEnds) {
   DaemonLink link(daemon.path);
   EXPECT_EQ(link.descriptor(), -1);
   EXPECT_TRUE(link.connect(ns_per_s));
-  EXPECT_FALSE(link.connect(ns_per_s)) << "the link is connected";
+  EXPECT_FALSE(link.connect(ns_per_s)) << "the link is already connected";
   EXPECT_GE(link.descriptor(), 0);
   std::vector<Json> heard;
   const auto on_line = [&heard](Json& line) { heard.push_back(std::move(line)); };

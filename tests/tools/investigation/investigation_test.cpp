@@ -133,7 +133,7 @@ TEST(ExperimentRig, RunsOnASimulatedBoardWithoutConsentAndReturnsTheLog) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   const Player play = rig_player(simulated_rig(), [](const std::string&) {
-    ADD_FAILURE() << "a simulated rig must not request consent";
+    ADD_FAILURE() << "an experiment on a simulated rig must not require consent";
     return false;
   });
   const auto log = play(small_experiment(), folder.string());
