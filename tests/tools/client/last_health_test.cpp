@@ -33,7 +33,7 @@ class LastHealth : public ::testing::Test {
     Json json{{"made_unix_s", made}};
     json["fingers"] = Json::array({{{"finger", "left"},
                                     {"state", left},
-                                    {"sentence", "Finger left has changed since the last note."},
+                                    {"sentence", "The finger left has changed since 2026-08-09."},
                                     {"suspects", {{{"id", "leak"}, {"next_steps", {"Listen.", "Close."}}}}}},
                                    {{"finger", "right"}, {"state", "steady"}}});
     return read(json.dump());
@@ -46,7 +46,7 @@ class LastHealth : public ::testing::Test {
 TEST_F(LastHealth, ReportsTheChangedFingerAndTheFirstNextStep) {
   const auto lines = health_lines(aged(7200, "alarm"));
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].text, "Finger left has changed since the last note.");
+  EXPECT_EQ(lines[0].text, "The finger left has changed since 2026-08-09.");
   EXPECT_EQ(lines[0].advice, "Listen.");
   EXPECT_FALSE(lines[0].good);
 }
@@ -60,10 +60,10 @@ TEST_F(LastHealth, ReportsNoChangeWithTheAgeOfTheCheck) {
 
 TEST_F(LastHealth, ReportsTheWarningsThatConcernTheWholeRig) {
   Json json = aged(7200, "steady");
-  json["warnings"] = Json::array({"Since then the fingers have changed alike.", 3});
+  json["warnings"] = Json::array({"All fingers of the rig show the same change.", 3});
   const auto lines = health_lines(json);
   ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[0].text, "Since then the fingers have changed alike.");
+  EXPECT_EQ(lines[0].text, "All fingers of the rig show the same change.");
   EXPECT_FALSE(lines[0].good);
   EXPECT_TRUE(lines[1].good);
 }
