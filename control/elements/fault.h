@@ -24,8 +24,8 @@ enum class FaultCode : std::uint16_t {
   reading_jumped = 204,        ///< the reading changed faster than a finger can move
   reading_frozen = 205,        ///< the reading stayed constant while the command changed
   displacement_beyond_limits = 206,
-  pressure_not_followed = 207,  ///< the measured pressure has differed from the command for pressure_cycles
-                                ///< cycles
+  pressure_not_followed = 207,  ///< the measured pressure has differed from all recent commands for
+                                ///< pressure_cycles cycles
   readback_mismatch = 301,      ///< the output that the board reports differs from the command that was
                                 ///< written
   write_refused = 302,          ///< the board rejected the command that was written
@@ -72,7 +72,7 @@ enum class RefusalCode : std::uint16_t {
   interlock_open = 3,
   emergency_stop = 4,
   sequence_unfit = 5,    ///< no sequence was given, or the sequence was prepared for another rig
-  no_valid_reading = 6,  ///< a channel that the sequence uses has no valid reading
+  no_valid_reading = 6,  ///< the rig is starting, or a channel that the sequence uses has no valid reading
   nothing_to_stop = 7,
   nothing_to_acknowledge = 8,
   cause_persists = 9,            ///< a reset was requested while the cause of a latched fault was still

@@ -14,7 +14,7 @@ class FollowWatch {
   static constexpr double tells_from_mm = 1;  ///< distance that the model must move after contact before this
                                               ///< class decides if the finger is held
   static constexpr double least_share = 0.5;  ///< smallest ratio of finger motion to model motion at which
-                                              ///< the finger counts as free; if the ratio is smaller, an
+                                              ///< the finger counts as not held; if the ratio is smaller, an
                                               ///< object holds the finger
 
   void reset() noexcept { touching_ = held_ = false; }

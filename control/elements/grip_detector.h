@@ -51,8 +51,7 @@ class EvidenceWindow {
 class HoldWatch {
  public:
   void start(double time_s, double interval_s, double least) noexcept;
-  /// Returns true if the interval that ends with this sample shows that the part is lost. Returns true only
-  /// for the first of these intervals.
+  /// Returns true if an interval ends with this sample and shows that the part is lost.
   bool observe(double time_s, bool usable, double evidence) noexcept;
 
  private:

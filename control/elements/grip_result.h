@@ -13,10 +13,11 @@ namespace softgrip::control {
 enum class GripResult : std::uint8_t {
   none,       ///< there has been no grip since the last start or reset
   holding,    ///< HOLDING: an object was detected and verified
-  no_part,    ///< NO PART: the finger moved as its model moves without an object
+  no_part,    ///< NO PART: the verification found no evidence of an object
   part_lost,  ///< PART LOST: an object was held before, but is not held any more
-  released,   ///< RELEASED: a release step has released the object
-  error,      ///< ERROR: a timeout, a fault or a stop occurred before the grip had a result
+  released,   ///< RELEASED: a release step or a vent has released the object
+  error,      ///< ERROR: because of a failed step, a fault, a stop or an aborted start, there is no reliable
+              ///< result
 };
 /// Returns the name that the user sees: "HOLDING", "NO PART", "PART LOST", "RELEASED" or "ERROR". Returns "-"
 /// for none.

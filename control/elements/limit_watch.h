@@ -42,7 +42,8 @@ class LimitWatch {
  private:
   BindingLimit reported_ = BindingLimit::none;
   BindingLimit now_ = BindingLimit::none;
-  double since_s_ = 0;   ///< time at which the command was first restricted by any limit
+  double since_s_ = 0;   ///< time since which limits have restricted the command, with interruptions below
+                         ///< gap_s
   double change_s_ = 0;  ///< time at which the present limit began to restrict the command
   double last_s_ = 0;
 };

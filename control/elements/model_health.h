@@ -23,7 +23,7 @@ enum class HealthState : std::uint8_t {
   unknown,  ///< the model has not been observed yet
   healthy,
   suspect,  ///< the residual drifts more than that of a healthy model; the model should be fitted again soon
-  unfit,    ///< the residual exceeds the tolerance of grip detection and of the feedforward, unfit_mm
+  unfit,    ///< rms_mm() exceeds unfit_mm, the tolerance of grip detection and of the feedforward
 };
 /// Returns the name of a state: "unknown", "healthy", "suspect" or "unfit".
 [[nodiscard]] std::string_view name_of(HealthState state) noexcept;
@@ -43,10 +43,9 @@ struct ModelHealthSettings {
   /// > 0; mean time between false alarms of a healthy model. The decision threshold is computed from this
   /// time.
   double false_alarm_interval_s = 3.6e6;
-  /// Limit for the root mean square of the residual over unfit_window_s, > 0. Above this limit, the model is
-  /// unfit.
+  /// Limit for ModelHealth::rms_mm(), > 0. Above this limit, the model is unfit.
   double unfit_mm = 1.5;
-  double unfit_window_s = 5;  ///< > 0; time over which the root mean square of the residual is computed
+  double unfit_window_s = 5;  ///< > 0; time constant of the mean square of the interval averages
 };
 
 /// Returns the mean number of independent standard normal values until a two-sided CUSUM reaches `threshold`.
@@ -91,7 +90,8 @@ class ModelHealth {
   bool skip() noexcept;
 
   [[nodiscard]] HealthState state() const noexcept { return state_; }
-  /// Returns the root mean square of the interval averages over about unfit_window_s [mm].
+  /// Returns the root mean square of the residual's interval averages, weighted with exp(-t / unfit_window_s)
+  /// [mm].
   [[nodiscard]] double rms_mm() const noexcept;
 
  private:

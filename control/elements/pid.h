@@ -20,8 +20,8 @@ namespace softgrip::control {
 enum class AntiWindup : std::uint8_t {
   none,              ///< no protection: the integrator continues (for comparisons with the other methods)
   conditional,       ///< the integrator stops while it would move a limited request further beyond the limit
-  back_calculation,  ///< the difference between request and limited command drives the integrator back within
-                     ///< tracking_time_s
+  back_calculation,  ///< the difference between request and limited command drives the integrator back, with
+                     ///< the time constant tracking_time_s
 };
 
 /// Names of the methods in rig files.

@@ -24,8 +24,8 @@ struct PlausibilitySettings {
   double frozen_after_s = 1.0;
   double frozen_band_mm = 0;       ///< >= 0; a change of the reading up to this size (a quantisation step)
                                    ///< counts as no change
-  double frozen_command_kpa = 10;  ///< > 0; a reading is frozen if it stays constant while the command
-                                   ///< changes by at least this pressure
+  double frozen_command_kpa = 10;  ///< > 0; a reading that is constant for frozen_after_s or longer is frozen
+                                   ///< if the command has changed by at least this pressure in this time
   /// > 0; a reading is also frozen if it stays constant while the model of the free finger moves by this
   /// distance. This rule applies only while Plausibility::stands_still() returns true.
   double frozen_expected_mm = 2;

@@ -32,11 +32,11 @@ class Reference {
   /// `point`.
   void start(double time_s, const ReferencePoint& point) noexcept;
 
-  // Each of the following functions appends a segment after end_s(). If `capacity` segments are already
-  // stored, the function changes nothing and returns false.
+  // Each of the following functions appends a segment after end_s(). If the list has no space for the
+  // segment, or if an argument is not permitted, the function changes nothing and returns false.
 
   /// Appends a minimum-jerk ramp with the peak speed `speed` (> 0, per s). If the reference was cut while it
-  /// moved, the reference brakes before the ramp.
+  /// moved, a braking segment is appended before the ramp.
   bool ramp_to(double value, double speed) noexcept;
   /// Appends a minimum-jerk ramp of the duration `duration_s` (> 0).
   bool ramp_for(double value, double duration_s) noexcept;

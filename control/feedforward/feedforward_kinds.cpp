@@ -56,8 +56,8 @@ BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSet
     : limits_(limits), inverse_(bouc_wen_of(model), tick_s) {}
 
 void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQuery&, double) noexcept {
-  // The result of the hysteresis does not depend on intermediate pressures. Therefore, the pressure change
-  // since the last call is applied as one segment.
+  // The hysteresis does not depend on the rate of the pressure. Therefore, the pressure change since the last
+  // call is applied as one segment. Reversals of the pressure since the last call are neglected.
   inverse_.advance(running.pressure_kpa());
 }
 

@@ -36,7 +36,8 @@ struct FeedforwardQuery {
 
 // Each kind of feedforward has three functions. enter() is called with the present outputs when tracking of a
 // reference begins. step() is called once per tick after enter(). preview_s() returns how far ahead of now
-// the kind reads the reference. A new kind needs a class and an entry in the variant of Feedforward.
+// the kind reads the reference. A new kind needs a class, an entry in the variant of Feedforward, and a case
+// in the constructor of Feedforward.
 
 class NoFeedforward {
  public:
@@ -143,7 +144,8 @@ class PlannedFeedforward {
   bool entering_ = true;
 };
 
-/// Returns how far ahead of now a plan is read: the sum of all dead times and half a tick [s].
+/// Returns how far ahead of now a plan is read: the sum of the model's dead times, extra_latency_s and half a
+/// tick [s].
 [[nodiscard]] double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings,
                                   double tick_s);
 

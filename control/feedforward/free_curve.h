@@ -47,8 +47,8 @@ class FreeCurve {
 
 struct FreeMotion {
   double rest_mm = 0;           ///< displacement of the finger at rest under the rest pressure
-  double lowest_mm = 0;         ///< displacement 3 s after the command went to the lowest pressure
-  double highest_mm = 0;        ///< displacement 3 s after the command went to the highest pressure
+  double lowest_mm = 0;         ///< displacement 3 s after the command has reached the lowest pressure
+  double highest_mm = 0;        ///< displacement 3 s after the command has reached the highest pressure
   double fastest_mm_per_s = 0;  ///< largest speed, upward or downward, within the slew limits
 };
 

@@ -160,8 +160,8 @@ bool has_element(const model::Model& model) {
   });
 }
 
-/// Returns the largest displacement, relative to the lowest command, in the first 10 s after a step from the
-/// lowest to the highest command [mm].
+/// Returns the largest distance of the finger from its displacement at the lowest command, in the first 10 s
+/// after a step from the lowest to the highest command [mm].
 double largest_after_step_mm(const model::Model& model, const LimitSettings& limits) {
   constexpr double step_s = 0.005;
   constexpr int steps = 2000;
@@ -179,8 +179,8 @@ double largest_after_step_mm(const model::Model& model, const LimitSettings& lim
 
 /// Checks that the settled displacement rises with the command, and that the finger stays deflected under a
 /// constant command. With a falling displacement, the PID controller has a positive feedback, and a plan has
-/// no solution. If the finger returns, the settled gain is near 0, and a controller must raise the command
-/// without end.
+/// no solution. If the finger returns to its initial displacement, the settled gain is near 0, and a
+/// controller must raise the command without end.
 tl::expected<void, Refusal> check_settled_gain(const model::Model& model, const LimitSettings& limits) {
   // With a smaller share, holding the finger would need more than 20 times the pressure that moves it there.
   constexpr double least_share = 0.05;

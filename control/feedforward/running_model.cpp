@@ -14,7 +14,7 @@ bool runs(const BlockInfo& info) {
   return info.inverse != Inverse::preview && info.inverse != Inverse::ignored;
 }
 
-/// Returns true for a valve block whose output needs time to follow the command. Memoryless blocks between
+/// Returns true for a valve block with a memory, such as a lag or a dead band. Memoryless blocks between
 /// valve and finger are inverted together with the finger.
 bool is_of_valve(const BlockInfo& info) {
   return info.station == Station::valve && info.inverse != Inverse::implicit;

@@ -13,10 +13,10 @@ namespace softgrip::control {
 inline constexpr double rests_after_s = 3;
 
 /// The model that runs in parallel to the finger, without its dead times. A dead time can exchange its place
-/// with every block that does not depend on time. Therefore, the dead times are removed from the chain, and
-/// the output of the chain is read with a delay. As a result, the chain runs ahead of the finger by the dead
-/// times. The delayed output needs only one look-up in a table, for a dead time of any length. The state of
-/// the chain is the state at which the plan of the feedforward begins.
+/// with every time-invariant block. Therefore, the dead times are removed from the chain, and the output of
+/// the chain is read with a delay. As a result, the chain runs ahead of the finger by the dead times. The
+/// delayed output needs only one look-up in a table, for a dead time of any length. The state of the chain is
+/// the state at which the plan of the feedforward begins.
 class RunningModel {
  public:
   /// @param extra_latency_s  time from the computation of a command to the board's output.
@@ -64,7 +64,7 @@ class RunningModel {
 
 /// Returns the sum of the model's dead times [s].
 [[nodiscard]] double dead_time_s(const model::Model& model);
-/// valve_of() returns those valve blocks of a model whose output needs time to follow the command. body_of()
+/// valve_of() returns the valve blocks of a model with a memory, such as lags and dead bands. body_of()
 /// returns all other blocks of the model. Both functions leave out dead times and noise.
 [[nodiscard]] model::Model valve_of(const model::Model& model);
 [[nodiscard]] model::Model body_of(const model::Model& model);

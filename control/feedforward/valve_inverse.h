@@ -49,7 +49,7 @@ class RegulatorInverse {
 ///                   is the time constant for the direction of the change.
 ///   several lags:   the same formula, where tau is the sum of their time constants.
 ///   no lag:         u = (p[k-1] + p[k]) / 2, the middle of the change, which also compensates half a sample.
-///   a regulator without a lag: the command that moves the regulator's spool through the overlap, minus the
+///   a regulator as the only lag: the command that moves the regulator's spool through the overlap, minus the
 ///                   effect of its integral (RegulatorInverse).
 ///   a dead band before one of these: u plus half of the band in the direction of the change. A dead band
 ///                   after them is ignored.
@@ -87,7 +87,8 @@ class ValveInverse {
 
   double tick_s_;
   Lag filling_, venting_;
-  std::optional<RegulatorInverse> regulator_;  ///< inverse of the regulator, used if the valve has no lag
+  std::optional<RegulatorInverse> regulator_;  ///< inverse of the regulator; empty if the valve has no
+                                               ///< regulator, or also has another lag
   double half_band_kpa_ = 0;
   double behind_band_kpa_ = 0;  ///< pressure command behind the valve's dead band
 };

@@ -19,8 +19,8 @@ using document::Problems;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Smallest permitted ratio of the displacement shortfall that the gripping pressure causes to the detection
-/// margin. With a smaller ratio, noise could hide a part.
+/// Smallest permitted ratio of a gripping pressure to the gripping pressure that causes a displacement
+/// shortfall of margin_mm. With a smaller ratio, noise could hide a part.
 constexpr double seen_from = 1.2;
 
 double rounded(double value) {

@@ -10,8 +10,8 @@ namespace {
 
 using document::Problems;
 
-/// A sequence whose parameters have values that differ from the defaults. The sequence is fitted to a rig,
-/// but not planned.
+/// Fits a sequence to a rig with other values of its parameters, to find the problems that these values
+/// cause. Computes no plan.
 class Variation {
  public:
   Variation(const Sequence& sequence, const RigSettings& settings) : settings_(settings) {

@@ -26,16 +26,16 @@ namespace softgrip::control {
 [[nodiscard]] std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
 
-/// Reads the sequence of a document with the values in `parameters`. Adds the problems that these values
-/// cause to `problems`.
+/// Reads the sequence of a document with the values in `parameters`. Adds all errors to `problems`, and
+/// returns nullopt if there are errors.
 [[nodiscard]] std::optional<Sequence> read_with(const document::Document& document,
                                                 const std::vector<Parameter>& parameters,
                                                 document::Problems& problems);
 
 /// Fits a sequence to a rig, and plans the motion of the channels with the feedforward `planned`
 /// (control/sequences/sequence_plans.h). Adds a problem for each step that does not fit the rig. A planned
-/// position that is out of reach is a warning. Returns nullopt if a step does not fit, or if a request
-/// through `stop` ends the planning.
+/// position that is out of reach is a warning. Returns nullopt if a step does not fit, if more motion must be
+/// planned than most_planned_s permits, or if a request through `stop` ends the planning.
 [[nodiscard]] std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
                                                       document::Problems& problems,
                                                       const std::stop_token& stop = {});

@@ -24,7 +24,7 @@ const Allowed short_s{0, 600};
 const Allowed long_s{0, 86400};
 const Allowed window_s{0.02, 60};
 const Allowed cycles{1, 10'000};
-/// Range of all numbers of a parameter.
+/// Permitted range of the numbers in `range` and `default` of a parameter.
 const Allowed any_number{-1e6, 1e6};
 
 void declare_file(SequenceKeys& keys) {
@@ -72,7 +72,8 @@ void declare_motion(SequenceKeys& keys) {
 
 void declare_steps(SequenceKeys& keys) {
   const auto timeout = required("timeout_s", &Step::timeout_s, short_s, "time limit for passing the step");
-  const auto retries = optional("retries", &Step::retries, {0, 10}, "number of repetitions of a failed step");
+  const auto retries =
+      optional("retries", &Step::retries, {0, 10}, "largest number of repetitions of a failed step");
   const auto on_fail = required("on_fail", &Step::on_fail, on_fail_names,
                                 "[reaction](#when-a-step-fails) if the last attempt fails");
   keys.tolerance = {timeout, retries, on_fail};
@@ -119,7 +120,8 @@ void declare_profiles(SequenceKeys& keys) {
   keys.scale = {
       optional("scale", &Profile::scale, {0.01, 20}, "only with `signal`: factor of the pressures")};
   keys.points = {{"points", "list", "", "points from time 0; the pressure between two points is linear"}};
-  keys.cycles = {optional("cycles", &Profile::cycles, cycles, "number of repetitions")};
+  keys.cycles = {
+      optional("cycles", &Profile::cycles, cycles, "number of times that the profile is executed")};
   keys.point = {required("time_s", &Point::time_s, long_s,
                          "time of the point; two points with equal times are a pressure step"),
                 required("pressure_kpa", &Point::pressure_kpa, kpa, "pressure of the point")};

@@ -13,8 +13,8 @@
 namespace softgrip::control {
 namespace {
 
-/// Longest part of a hold step that a plan covers [s]. During a hold step, the plan has no other effect than
-/// to compensate creep.
+/// Longest time that a plan covers after the end of its reference, for example during a hold step [s]. In
+/// this time, the plan has no other effect than to compensate creep.
 constexpr double longest_hold_s = 20;
 /// If the displacement in a plan differs from the reference by more than this distance, plan_steps() reports
 /// the plan [mm].
@@ -87,7 +87,7 @@ class Walk {
   }
 
  private:
-  /// Returns the time at which a release step starts to vent.
+  /// Returns the time at which a release step starts to vent; infinite for all other steps.
   [[nodiscard]] double vent_s() const {
     return step_->step.kind == StepKind::release ? player_.motion_end_s() : infinite;
   }

@@ -27,11 +27,12 @@ inline constexpr double most_planned_s = 600;
 /// Computes the plans for the expected execution of the sequence. In this execution, each channel begins at
 /// rest under its rest pressure, and no step fails. Each settling time and verification window is as short as
 /// possible. The plans use the ChannelPlayer of the control loop, so their references are those that the loop
-/// will follow. A plan ends at the next step of its channel. The plan covers at most 20 s of a hold; after
-/// this time, the last command remains. PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles
-/// deviations from the expected execution. The function fills PreparedStep::plans and
-/// PreparedSequence::planned_s. If the planned motion is longer than most_planned_s, the function fills only
-/// planned_s. After a request through `stop`, the function returns soon, and the sequence must not be used.
+/// will follow. A plan ends at the next step of its channel. A plan ends at the latest 20 s after the end of
+/// its reference; after this time, the last command remains. PlannedFeedforward
+/// (control/feedforward/feedforward_kinds.h) handles deviations from the expected execution. The function
+/// fills PreparedStep::plans and PreparedSequence::planned_s. If the planned motion is longer than
+/// most_planned_s, the function fills only planned_s. After a request through `stop`, the function returns
+/// soon, and the sequence must not be used.
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,
                                                  const std::stop_token& stop = {});
 
@@ -41,8 +42,8 @@ inline constexpr double most_planned_s = 600;
                                           document::Problems& problems);
 
 /// Plans the motion of the channels with the feedforward `planned` (control/sequences/sequence_plans.h). A
-/// planned position that is out of reach is a warning. The function adds a problem in two cases: a plan is
-/// longer than most_planned_s, or `stop` requests the end of the computation.
+/// planned position that is out of reach is a warning. The function adds a problem in two cases: the planned
+/// motion of a channel is longer than most_planned_s, or `stop` requests the end of the computation.
 /// @param prepared  result of fit_to_rig() for this sequence.
 void plan_motion(const Sequence& sequence, const RigSettings& settings, PreparedSequence& prepared,
                  document::Problems& problems, const std::stop_token& stop);

@@ -21,7 +21,7 @@ constexpr double settled_after_s = 0.2;
 constexpr double settled_sigma = 4;
 /// Time constant of the filter that removes the noise of the reading from ChannelOutput::free_kpa [s].
 constexpr double need_filter_s = 0.03;
-/// A limit that reduces the command by less than this pressure is not reported [kPa].
+/// A limit that changes the command by at most this pressure is not reported [kPa].
 constexpr double unnoticed_kpa = 0.5;
 /// Largest number of missed ticks for which the model is advanced after a gap. After a longer gap, the model
 /// restarts at rest under the present command.

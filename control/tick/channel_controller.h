@@ -34,8 +34,8 @@ struct ChannelInput {
 
 /// Computes the commands of one channel. The settings must be in the ranges that their headers state. If
 /// check_feedforward() (control/feedforward/invertibility.h) refuses the model for the configured
-/// feedforward, the channel has no feedforward. A caller must not operate a model whose settled displacement
-/// does not rise with the command, because its feedback would be unstable.
+/// feedforward, the channel has no feedforward. A caller must not operate a channel whose model has a settled
+/// displacement that does not rise with the command, because the feedback would be unstable.
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);
@@ -44,8 +44,8 @@ class ChannelController {
   void start(double command_kpa, ChannelOutput& channel) noexcept;
 
   /// Runs one period. On entry, `channel` contains the result of start() or of the last tick. On return, it
-  /// contains the result of this tick, except the members result, evidence, step and safe_kpa. If two calls
-  /// are more than one period apart (missed cycles), the model computes the missed ticks.
+  /// contains the result of this tick, except the members result, evidence, step, limit and safe_kpa. If two
+  /// calls are more than one period apart (missed cycles), the model computes the missed ticks.
   void tick(const ChannelInput& input, ChannelOutput& channel) noexcept;
 
   /// Returns how far ahead of now the feedforward reads the reference [s]. To avoid a step of the command,
@@ -77,8 +77,8 @@ class ChannelController {
   double tick_s_;
   LimitSettings limits_;
   double noise_mm_;
-  double need_share_;  ///< share of the difference to its new value by which ChannelOutput::free_kpa changes
-                       ///< per tick
+  double need_share_;  ///< filter coefficient of ChannelOutput::free_kpa: share of the distance to the
+                       ///< unfiltered value that one tick covers
   bool displacement_used_;
   RunningModel running_;
   FreeCurve curve_;

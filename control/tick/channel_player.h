@@ -39,7 +39,7 @@ class ChannelPlayer {
   /// there is no plan. A hold step continues with the plan of the previous step.
   void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
   /// Moves the channel back to the displacement or pressure at which the attempt began. The return has the
-  /// speed that the step specifies.
+  /// speed or the duration that the step specifies.
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
   /// Executes a tick of the step, or of the return that back_off() has started. During a return, the result
   /// `passed` means that the return is finished.
@@ -143,7 +143,8 @@ class ChannelPlayer {
   bool within_ = false;   ///< true: the displacement is within the tolerance of the target
   Bounds bounds_;         ///< bounds of the step; in a hold, also the bounds of the previous step
   bool profile_ = false;  ///< true: the pressure follows the profile of the step
-  bool closing_ = false;  ///< true: the step increases the displacement or the pressure
+  bool closing_ = false;  ///< true: the step increases the displacement or the pressure, or it is a track or
+                          ///< pressure step
   /// Start of the time in which two conditions have been true without interruption: the finger is in contact,
   /// and the command is at or above the rest pressure. Empty while a condition is false.
   std::optional<double> touching_since_s_;

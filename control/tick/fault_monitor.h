@@ -27,7 +27,8 @@ class FaultMonitor {
   /// Returns the most severe fault condition of this tick. The condition is a fault, or becomes a fault if it
   /// lasts long enough. A reset of the fault during the condition would make the fault latch again.
   [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
-  /// Returns true if there is no bus fault in this tick.
+  /// Returns true if the condition for a bus fault is not met in this tick: a connection is open, and the
+  /// last exchange succeeded.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
 
  private:

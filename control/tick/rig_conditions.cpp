@@ -78,8 +78,9 @@ bool RigConditions::heard(const TickInput& input) noexcept {
 }
 
 /// Checks if all channels of the sequence are at rest. For each vented channel, the model is then shifted to
-/// the reading. The shift must not exceed the margin of grip detection. A larger shift can contain creep, and
-/// the decay of this creep would later look like an object.
+/// the reading. If a grip of the channel is verified by detection, the shift must not exceed the margin of
+/// grip detection. A larger shift can contain creep, and the decay of this creep would later look like an
+/// object.
 void RigConditions::look_for_rest(const PreparedSequence& sequence, double time_s,
                                   std::span<const ChannelOutput> seen, SupervisorInputs& inputs) noexcept {
   bool all = true;

@@ -25,8 +25,8 @@ class RigConditions {
   /// rest.
   SupervisorInputs observe(const TickInput& input, double time_s, const Supervisor& supervisor,
                            const SequencePlayer& player, std::span<ChannelOutput> seen) noexcept;
-  /// Starts the wait until the channels are at rest. The next ticks check it while the supervisor is in the
-  /// state `resynchronising`.
+  /// Starts the wait until the channels are at rest. While the supervisor is in the state `resynchronising`,
+  /// each tick checks if they are at rest.
   void seek_rest(double time_s) noexcept;
   /// Returns the most severe fault condition of the tick; see FaultMonitor::cause().
   [[nodiscard]] const Fault& cause() const noexcept { return monitor_.cause(); }

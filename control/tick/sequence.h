@@ -31,9 +31,10 @@ constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
 
 /// The kind of a step. The name of a kind is the key of the step in the file.
 enum class StepKind : std::uint8_t {
-  move,      ///< moves to a target along a ramp
-  grip,      ///< moves to a target, then verifies the grip: HOLDING or NO PART
-  hold,      ///< keeps the command and verifies the grip repeatedly; result PART LOST if the object is lost
+  move,  ///< moves to a target along a ramp
+  grip,  ///< moves to a target, then verifies the grip: HOLDING or NO PART
+  hold,  ///< keeps the target of the previous step and verifies the grip repeatedly; result PART LOST if the
+         ///< object is lost
   release,   ///< moves towards the rest pressure, then stays at the rest pressure for purge_s: result
              ///< RELEASED
   track,     ///< follows a displacement over time with feedback; used in studies
@@ -51,7 +52,7 @@ inline constexpr auto step_names = enum_names<StepKind>({{StepKind::move, "move"
 
 /// The action after a step that has failed and has no retries left.
 enum class OnFail : std::uint8_t {
-  vent,      ///< the sequence ends, and all channels go to the rest pressure
+  vent,      ///< the sequence ends, and its channels go to the rest pressure
   hold,      ///< the sequence ends, and the commands do not change
   abort,     ///< the sequence ends with the safe_action of the rig file for the present phase
   release,   ///< the sequence continues with the next release step; without such a step, the action is vent
@@ -196,8 +197,8 @@ struct Step {
   Sine sine;                           ///< reference of a track step
   Profile profile;                     ///< pressure over time of a pressure step
   double settle_s = 0;                 ///< waiting time after the end of the ramp
-  std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement does not come within
-                                       ///< this tolerance of the target before timeout_s
+  std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement does not stay within
+                                       ///< this tolerance of the target for settle_s before timeout_s ends
   Bounds bounds;                       ///< upper bounds of the command, for all kinds of steps except
                                        ///< release; a hold has bounds of its own only if the file gives them
   OnContact on_contact = OnContact::ignore;

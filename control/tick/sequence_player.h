@@ -50,7 +50,8 @@ class SequencePlayer {
 
   /// Handles a release request. The sequence continues with its next release step. Without a further release
   /// step, the sequence is finished and must be vented. A release request during a hold step lets the
-  /// sequence end as `done`. A release request during any other step lets the sequence end as `stopped`.
+  /// sequence end as `done`, and during a release step it has no effect. During any other step, it lets the
+  /// sequence end as `stopped`.
   Outcome release(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
   /// Ends the sequence because of a stop or a fault. A channel without a result gets ERROR. A channel with

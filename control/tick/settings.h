@@ -44,10 +44,11 @@ inline constexpr std::size_t max_channels = 16;
 
 /// The phase of a rig, which determines its safe output.
 enum class Phase : std::uint8_t {
-  idle,       ///< no sequence runs, or a sequence is starting or resynchronising
-  closing,    ///< the fingers approach or grip a part, settle, or verify the grip; also during the track and
-              ///< pressure steps of studies
-  holding,    ///< a hold step is in progress
+  idle,       ///< no sequence runs, and no channel has the result HOLDING; also while a start waits until the
+              ///< fingers are at rest
+  closing,    ///< a sequence runs, no channel has the result HOLDING, and the step is not a release step
+  holding,    ///< a channel has the result HOLDING, with or without a running sequence; not during a release
+              ///< step
   releasing,  ///< a release step is in progress
 };
 /// Names of the phases: the keys of `safe_action` in the rig file.

@@ -50,9 +50,9 @@ struct SupervisorOutputs {
   bool release = false;                          ///< true: the running sequence must continue with its
                                                  ///< release step
   bool play = false;                             ///< true: the running sequence executes a tick
-  std::uint32_t vented = 0;                      ///< channels that have been vented because of a stop
-  std::uint32_t no_rest = 0;                     ///< channels that get the result ERROR, because they did not
-                                                 ///< come to rest
+  std::uint32_t vented = 0;   ///< channels that a stop or a vent has brought to their rest pressure
+  std::uint32_t no_rest = 0;  ///< channels that get the result ERROR, because they did not
+                              ///< come to rest
   std::array<UnsettledReason, max_channels> unsettled{};  ///< for no_rest: the reason of each channel
   bool seek_rest = false;                   ///< true: a start was accepted, so the loop must wait until
                                             ///< the channels are at rest
@@ -122,8 +122,8 @@ class Supervisor {
                                                 ///< the sequence
   std::uint32_t start_request_ = 0;
   std::uint32_t halted_by_ = 0;  ///< id of the newest request to vent, or to stop any sequence
-  std::uint32_t taken_ = 0;      ///< id of the newest request of any kind that does not set halted_by_;
-                                 ///< requests of these kinds arrive in the order of their ids
+  std::uint32_t taken_ = 0;      ///< id of the newest request that is neither a stop nor a vent; requests of
+                                 ///< these kinds arrive in the order of their ids
   /// Ids of starts that a stop request named before these starts arrived. 64 entries are sufficient, because
   /// the queue of the loop cannot hold more starts.
   static constexpr std::size_t most_withdrawn = 64;

@@ -30,12 +30,14 @@ enum class State : std::uint8_t {
   resynchronising,  ///< a start was accepted; the controller waits until the fingers are at rest, and adjusts
                     ///< the models to the readings
   running,          ///< a sequence runs
-  stopping,         ///< a sequence was stopped; the stop action is not finished yet
-  faulted,          ///< a fault is latched; the outputs follow the action that the rig file gives for the
-                    ///< phase of the fault
+  stopping,  ///< channels go to their rest pressure because of a stop, a vent, a release or the end of a
+             ///< sequence
+  faulted,   ///< a fault is latched; the outputs follow the action that the rig file gives for the
+             ///< phase of the fault
 };
 [[nodiscard]] std::string_view name_of(State state) noexcept;
-/// Returns true if a request makes the rig move in this state: resynchronising, running or stopping.
+/// Returns true if the rig moves or may start to move by itself in this state: resynchronising, running or
+/// stopping.
 [[nodiscard]] constexpr bool moves(State state) noexcept {
   return state == State::resynchronising || state == State::running || state == State::stopping;
 }
@@ -122,8 +124,9 @@ struct ChannelOutput {
   double offset_mm = 0;        ///< offset that resynchronisation has added to the model
   double shortfall_mm = 0;     ///< displacement of free motion minus reading; NaN if the shortfall is unknown
   double free_kpa = 0;         ///< command under which the free finger rests at the last valid reading
-  /// gripping pressure: command minus free_kpa; NaN without displacement feedback
-  double squeeze_kpa = 0;
+  double squeeze_kpa = 0;    ///< gripping pressure: command under which the free finger rests at the model's
+                             ///< displacement, minus that command for the reading; NaN without a valid
+                             ///< reading
   double age_s = 0;          ///< age of the reading in this tick
   double health_rms_mm = 0;  ///< root mean square of the residual; above unfit_mm, the model is unfit
   std::uint16_t step = 0;    ///< index of the step in the sequence
@@ -203,7 +206,8 @@ struct Event {
     reading_unsteady,  ///< the reading jumps back and forth repeatedly; `value` is the last jump [mm]
     reading_steady,    ///< the reading has not jumped for JumpWatch::calm_s
     start_checked,     ///< the result of a request of the kind `check`: a start would be accepted now
-    not_at_rest,       ///< a start found a finger that was not at rest; `value` is the model offset [mm]
+    not_at_rest,  ///< a start was aborted, because a finger moved or deviated from its model at rest; `value`
+                  ///< is the model offset [mm]
   };
   /// The detail of an event. DetailOf gives the type for each kind. The integer is the index of a step.
   using Detail =

@@ -17,11 +17,10 @@ using GainPoint = std::array<double, 3>;
 struct Simplex {
   GainPoint edges{0.4, 0.4, 0.02};  ///< distances of the corners of the simplex from the start point of the
                                     ///< search, one distance per variable
-  int iterations = 60;              ///< number of iterations of the search; each iteration computes the cost
-                                    ///< once or twice
-  double done_share = 0;            ///< the search ends when the costs of the corners differ by less than
-                                    ///< this share of a cost; 0: the number of iterations alone ends the
-                                    ///< search
+  int iterations = 60;    ///< number of iterations of the search; an iteration computes the cost 1, 2 or 5
+                          ///< times
+  double done_share = 0;  ///< the search ends when the costs of the corners differ by less than this share of
+                          ///< the lowest cost; 0: the number of iterations alone ends the search
 };
 /// Returns the corner of the simplex that has the lowest cost at the end of the search.
 [[nodiscard]] GainPoint nelder_mead(const std::function<double(const GainPoint&)>& cost,

@@ -58,7 +58,7 @@ struct TrackingResult {
   double out_of_reach_share = 0;              ///< share of the ticks in which the reference was out of reach
   double cut_share = 0;                       ///< share of the ticks in which a limit changed the requested
                                               ///< command
-  HealthState health = HealthState::unknown;  ///< worst state of the model's health during the simulation
+  HealthState health = HealthState::unknown;  ///< worst state of the model's health
 };
 [[nodiscard]] TrackingResult track(const TrackingRun& run);
 

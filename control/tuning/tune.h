@@ -26,8 +26,8 @@ struct TuneTask {
   double mismatch = 0.05;       ///< largest relative difference of a finger's parameter from the parameter of
                                 ///< `finger`
   int draws = 6;                ///< number of random fingers
-  double most_sensitivity = 2;  ///< largest permitted Ms of each finger; Ms = 2 means a gain margin of 2 and
-                                ///< a phase margin of 29 degrees
+  double most_sensitivity = 2;  ///< largest permitted Ms of each finger; Ms = 2 means a gain margin of at
+                                ///< least 2 and a phase margin of at least 29 degrees
   std::uint64_t seed = 1;
   int iterations = 40;  ///< number of iterations of the simplex search after the grid search
 };
@@ -52,7 +52,8 @@ struct Tuned {
 [[nodiscard]] Tuned tune(const TuneTask& task);
 
 /// Sets the sine of the task to a sine that the model can follow. The mean and the amplitude are fixed shares
-/// of the displacement at the highest pressure.
+/// of the motion between the rest pressure and the end of the pressure range that is further from the rest
+/// pressure.
 void choose_reference(TuneTask& task);
 
 }  // namespace softgrip::control
