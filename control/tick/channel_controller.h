@@ -21,7 +21,7 @@
 namespace softgrip::control {
 
 struct ChannelInput {
-  Nanoseconds now = 0;     ///< time for which the tick was scheduled
+  Nanoseconds now = 0;     ///< time at which the tick started
   model::Reading reading;  ///< newest reading that the driver returned
   ChannelDemand demand;    ///< demand of the sequence player or of the supervisor
   /// True: sets the offset of the model to the difference between reading and model. The caller requests this

@@ -20,7 +20,7 @@ bool is_answer(BusStatus status) noexcept {
 }
 
 /// Returns true if the connection must be closed: the board may still send the response to an old request, or
-/// it waits until a new connection is set up.
+/// its watchdog has tripped and requires a new connection.
 bool loses_session(BusStatus status) noexcept {
   return !is_answer(status) || status == BusStatus::watchdog_tripped;
 }
@@ -256,7 +256,8 @@ void Bus::note_failure(BusStatus status) noexcept {
 /// Uses the outputs that the board reports as the present outputs if they are nearer to rest than the written
 /// commands. Writing the last commands a second time would move these outputs away from rest. Outputs whose
 /// safe action is hold are not used in this way, because a gateway that repeats an old reading must not open
-/// a grip. The commands of such a channel count until commands with another safe action arrive.
+/// a grip. For such a channel, the written commands count as the present outputs until commands with another
+/// safe action arrive.
 void Bus::respect_found_outputs() noexcept {
   const Commands& commands = shared_.commands.value();
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -287,8 +288,7 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
-  last_good_.reset();  // clears the time of the last exchange, so that each gap is handled once; the rest
-                       // pressures are written until the next successful exchange
+  last_good_.reset();  // so that each gap is handled once
 }
 
 void Bus::rest_outputs() noexcept {

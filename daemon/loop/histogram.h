@@ -12,10 +12,10 @@
 
 namespace softgrip::daemon {
 
-/// Number of durations in each bin. Durations are in nanoseconds. Below 128 ns, a bin is 1 ns wide. Above 128
-/// ns, a bin is as wide as 1/128 of the start of its octave, so the error is below 0.8 % for durations up to
-/// 68 s. The bins need 30 kB. A negative duration is added to the bin of 0, and a duration above 68 s to the
-/// last bin. add() needs a few plain loads and stores, no locks and no atomic additions.
+/// Counts durations in bins. Durations are in nanoseconds. Below 128 ns, a bin is 1 ns wide. Above 128 ns, a
+/// bin is as wide as 1/128 of the start of its octave, so the error is below 0.8 % for durations up to 68 s.
+/// The bins need 30 kB. A negative duration is added to the bin of 0, and a duration above 68 s to the last
+/// bin. add() needs a few plain loads and stores, no locks and no atomic additions.
 class Histogram {
  public:
   /// Adds a duration to the histogram. One thread may call this function, and always the same one.

@@ -19,12 +19,13 @@ namespace softgrip::daemon {
 
 /// Passed from the loop to the bus: the outputs for the board.
 struct Commands {
-  Nanoseconds at = 0;  ///< scheduled time of the tick that computed the commands
+  Nanoseconds at = 0;  ///< time at which the tick that computed the commands started
   std::array<double, control::max_channels> command_kpa{};
   /// Outputs that the bus writes if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
-  bool may_rise = false;  ///< true: a sequence runs, so commands may move away from rest; false: a command
-                          ///< that is further from rest than the outputs is an old command that arrived late
+  bool may_rise = false;  ///< true: a sequence was started and has not ended, so commands may move away from
+                          ///< rest; false: a command that is further from rest than the outputs is an old
+                          ///< command that arrived late
   std::uint32_t inhibit = 0;  ///< value of control::BusHealth::inhibit that the loop had read in this tick
   bool last = false;          ///< true: the loop has ended, and the bus writes these commands until the board
                               ///< confirms them
@@ -51,8 +52,9 @@ struct BusReport {
 /// Passed from the bus to the event log: a change of the state of the bus.
 struct BusEvent {
   enum class Kind : std::uint8_t {
-    connected,       ///< the board has responded on a new connection
-    failed,          ///< the first failure after a successful exchange; `status` and `detail` give the reason
+    connected,  ///< the board has responded on a new connection
+    failed,  ///< the first failure since the start or since a successful exchange; `status` and `detail` give
+             ///< the reason
     recovered,       ///< the first successful exchange after a failure
     loop_silent,     ///< the commands of the loop timed out, so the safe outputs are written
     loop_back,       ///< the commands of the loop are written again
@@ -154,8 +156,7 @@ struct SharedState {
                                                   ///< lagged
   std::atomic<std::uint64_t> events_dropped{0};   ///< number of events that were dropped because one tick had
                                                   ///< too many events
-  std::atomic<bool> shutdown_requested{false};  ///< request to the loop to end after a last tick, which sends
-                                                ///< the safe outputs
+  std::atomic<bool> shutdown_requested{false};    ///< request to the loop to send the safe outputs and to end
   std::atomic<bool> safe_state_confirmed{false};  ///< set by the bus when the board has confirmed the last
                                                   ///< commands
 };

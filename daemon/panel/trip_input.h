@@ -1,6 +1,6 @@
 #pragma once
-// A digital input that stops the rig. The input trips if its level is doubtful. It clears after its level has
-// been steady.
+// A digital input whose trip stops the rig. If the level of the line is uncertain, the input trips. The input
+// clears only after the line has had its clear level for the debounce time.
 
 #include "base/periodic_schedule.h"
 
@@ -10,10 +10,9 @@ namespace softgrip::daemon {
 /// the two sources would be sufficient: edges arrive faster, and levels cannot be lost. The input starts
 /// tripped.
 ///
-///   trips   when the line has been at its trip level for `debounce` without interruption. If the line
-///   bounces,
-///           the input trips at the latest 2 `debounce` after the first edge to the trip level. A disturbance
-///           shorter than `debounce` does not trip the input.
+///   trips   when the line has been at its trip level for `debounce` without interruption. The input also
+///           trips if the line has not been steady for 2 `debounce` after its first edge. A disturbance that
+///           is shorter than `debounce` does not trip the input.
 ///   clears  when the line has been at its clear level for `debounce` without interruption
 class TripInput {
  public:

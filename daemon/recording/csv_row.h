@@ -16,7 +16,8 @@ inline constexpr std::size_t longest_decimal = 32;
 /// Writes a number with at most six decimals and without trailing zeros, and returns the end of the text. Six
 /// decimals are sufficient: a nanometre or a millipascal is far below the resolution of any sensor of a rig.
 /// An exact text, from which the same double can be read, would take four times as long to write. A number
-/// above 1e12 is written as such an exact text. For a number that is not finite, writes nothing.
+/// whose magnitude is 9e12 or more is written as such an exact text. For a number that is not finite, writes
+/// nothing.
 [[nodiscard]] char* write_decimal(char* to, double value) noexcept;
 
 /// Writes a number of nanoseconds in seconds. The text is exact and has no trailing zeros.

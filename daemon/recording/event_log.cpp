@@ -319,8 +319,8 @@ std::string_view name_of(Severity severity) noexcept {
 std::uint64_t EventLog::add(EventEntry entry) {
   const std::scoped_lock lock(mutex_);
   entry.id = ++last_id_;
-  // Clients choose the names of sequences and steps. If each name had its own counter, the number of counters
-  // could grow without limit.
+  // Clients choose the names of sequences and the number of steps. If each name and each index of a step had
+  // its own counter, the number of counters could grow without limit.
   const bool named = entry.kind == "sequence_started" || entry.kind == "step_started";
   ++counts_[{entry.kind, named ? std::string() : entry.code, entry.channel}];
   entries_.push_back(std::move(entry));

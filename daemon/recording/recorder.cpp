@@ -28,7 +28,8 @@ constexpr std::size_t events_per_file = 10'000;
 
 using Kind = control::Event::Kind;
 
-/// Returns the name with every character except letters, digits, '-' and '_' replaced by '_'.
+/// Returns the first 60 bytes of the name, with each byte that is not a letter, a digit, '-' or '_' replaced
+/// by '_'.
 std::string file_name_of(std::string_view name) {
   std::string text;
   for (const char c : name.substr(0, 60)) {

@@ -28,11 +28,11 @@ struct RecorderStatus {
   std::string error;               ///< disk error of the present or last recording
 };
 
-/// Decides when recordings start and end, and writes them. A recording starts with a sequence and ends 0.5 s
-/// after the last motion of the sequence. A fault outside a sequence gets its own recording, which starts
-/// history_s before the fault. A disk error is reported as an event and ends the recording. After a pause,
-/// the recorder tries to begin a new recording. All functions except status() must be called from the same
-/// thread.
+/// Decides when recordings start and end, and writes them. In the mode `always`, one recording contains all
+/// data. In the mode `sequences`, a recording starts with a sequence and ends 0.5 s after the last motion of
+/// the sequence. A fault outside a sequence gets its own recording, which starts history_s before the fault.
+/// A disk error is reported as an event and ends the recording. After a pause, the recorder tries to begin a
+/// new recording. All functions except status() must be called from the same thread.
 class Recorder {
  public:
   /// If `only_folder` is not empty, the recorder ignores the recording mode and records all data from start

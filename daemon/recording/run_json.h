@@ -1,6 +1,5 @@
 #pragma once
-// Defines the provenance of a recording, which is all contents of run.json except the events, and creates the
-// text of run.json.
+// Defines the data of run.json, and creates the text of run.json.
 
 #include <cstdint>
 #include <memory>

@@ -132,7 +132,8 @@ pid_t holder_of(int file) {
 
 void write_holder(int file) {
   const std::string text = std::to_string(::getpid()) + "\n";
-  // Messages are the only use of the process id, so an error of the write is ignored.
+  // An error of the write is ignored. Without the process id, messages name no process, and the holder counts
+  // as running.
   if (::ftruncate(file, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
 }

@@ -42,9 +42,9 @@ class LockedFile {
 /// The purpose for which a program takes a lock.
 enum class LockPurpose : std::uint8_t {
   drive,
-  /// Writing the safe outputs. For this purpose, the lock of another running softgrip program is respected. A
-  /// lock that cannot be created is ignored. A holder that does not run (stopped, or blocked in a system
-  /// call) is also ignored.
+  /// Writing the safe outputs. For this purpose, the lock of another running softgrip program is respected.
+  /// If a lock cannot be created, the program continues without this lock. A holder that does not run
+  /// (stopped, or blocked in a system call) is ignored.
   vent,
 };
 
@@ -58,8 +58,8 @@ class BoardLock {
   [[nodiscard]] static tl::expected<BoardLock, std::string> take(const rig::RigFile& rig,
                                                                  LockPurpose purpose = LockPurpose::drive);
 
-  /// Returns one sentence for each holder whose lock was ignored, for example a user who is not entitled to
-  /// the lock.
+  /// Returns one sentence for each lock that could not be created, and for each holder whose lock was
+  /// ignored, for example a user who is not entitled to the lock.
   [[nodiscard]] const std::vector<std::string>& remarks() const noexcept { return remarks_; }
 
  private:

@@ -78,8 +78,8 @@ struct Outcome {
   bool safe_state_confirmed = false;  ///< true: at the end, the board confirmed the safe outputs
   bool pressure_left_on = false;      ///< true: for at least one channel, the safe output is a pressure that
                                       ///< differs from rest (control::pressed())
-  double vents_after_s = 0;           ///< time until the board's watchdog vents the channels under pressure
-                                      ///< [s]; 0: the board never vents them
+  double vents_after_s = 0;  ///< time until the board's watchdog vents the channels under pressure [s]; 0: no
+                             ///< channel is under pressure, or the board has no watchdog
   int signal = 0;  ///< first signal that requested the end of the run before the outputs were safe; 0: there
                    ///< was none
   std::uint64_t ticks = 0;
@@ -101,9 +101,10 @@ struct DaemonParts;  // defined in daemon_parts.h
 
 class Daemon {
  public:
-  /// Creates the daemon. `rig` must be valid. The error is a sentence. There is an error in three cases:
-  /// virtual time with a real board; virtual time without a sequence and without a duration; a folder that
-  /// already contains a recording.
+  /// Creates the daemon. `rig` must be valid. The error is a sentence. There is an error if record_folder
+  /// already contains a recording. With virtual time, there is also an error in these cases: a real board;
+  /// digital lines; neither a sequence nor a duration; a sequence that holds until a release, without a
+  /// duration.
   [[nodiscard]] static tl::expected<std::unique_ptr<Daemon>, std::string> create(rig::RigFile rig,
                                                                                  DaemonOptions options);
   Daemon(const Daemon&) = delete;

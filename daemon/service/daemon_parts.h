@@ -29,7 +29,7 @@ struct DaemonParts {
   [[nodiscard]] Nanoseconds bus_offset() const noexcept;
   /// Passes new events to options.on_event.
   void deliver_events();
-  /// If the sequence has ended, updates `outcome` from the present state of the rig.
+  /// Completes `outcome` at the end of a run, from the present state of the rig.
   void conclude(Outcome& outcome);
   void tell(const char* kind, Severity severity, std::string text);
 

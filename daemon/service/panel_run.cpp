@@ -8,8 +8,8 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Returns a priority that is lower than the priorities of the loop and the bus, and higher than the priority
-/// of all threads without real-time scheduling.
+/// Returns the priority of the panel: 2 below the priority of the loop, but at least 1; 0 without real-time
+/// scheduling.
 int priority_of(const rig::RealTimeSettings& settings) {
   return settings.priority > 0 ? std::max(settings.priority - 2, 1) : 0;
 }

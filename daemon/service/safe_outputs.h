@@ -43,7 +43,7 @@ struct SafeOutputsReport {
 
 /// Vents the board of a rig from a process that has not opened the board. Does not vent if a daemon responds
 /// on the rig's socket, or if a softgrip program holds the board's lock. Ignores a program whose user is not
-/// entitled to the lock, and a program that does not respond.
+/// entitled to the lock, and a program that is stopped or blocked.
 [[nodiscard]] SafeOutputsReport vent_rig(const rig::RigFile& rig);
 
 }  // namespace softgrip::daemon

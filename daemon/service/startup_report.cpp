@@ -60,7 +60,7 @@ std::string channel_line(const control::ChannelSettings& channel, const rig::Val
 }
 
 /// Returns the lines about the GPIO. They contain the response time of an emergency stop: the debounce time,
-/// plus the time to the next tick, plus the duration of the exchange.
+/// plus one cycle until the next tick, plus the time from this tick to its exchange.
 std::string gpio_lines(const rig::RigFile& rig) {
   std::string text;
   const rig::GpioSettings& gpio = *rig.gpio;

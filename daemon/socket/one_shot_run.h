@@ -10,8 +10,8 @@
 
 namespace softgrip::daemon {
 
-/// Waits until the rig is idle, starts the sequence, and waits until it has ended and the fingers are at
-/// rest.
+/// Waits until the rig is idle, starts the sequence, and waits until 1 s after the end of the sequence. If
+/// the rig is still stopping then, also waits until it is idle or faulted.
 class OneShotRun {
  public:
   enum class State : std::uint8_t {

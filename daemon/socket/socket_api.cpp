@@ -300,12 +300,13 @@ void SocketApi::abandon_loading() noexcept {
   loading_->stop.request_stop();
 }
 
-/// Refuses the start whose sequence is being loaded, because a request to stop or to vent has arrived.
+/// Refuses the start whose sequence is being loaded, because a stop, vent or release request has arrived.
 void SocketApi::refuse_loading() {
   if (!loading_ || loading_->abandoned) return;
   abandon_loading();
-  send_error(loading_->client, loading_->id,
-             error_json("abandoned", "a stop or vent request arrived while the sequence was being loaded"));
+  send_error(
+      loading_->client, loading_->id,
+      error_json("abandoned", "a stop, vent or release request arrived while the sequence was being loaded"));
 }
 
 void SocketApi::process_loaded(Nanoseconds now) {
@@ -313,7 +314,8 @@ void SocketApi::process_loaded(Nanoseconds now) {
   LoadingStart start = std::move(*loading_);
   loading_.reset();
   SequenceLoader::Result sequence = start.loaded.get();
-  // If the client has disconnected while the sequence was loaded, the sequence is not started.
+  // If the client has disconnected, or if a stop, vent or release request has arrived, the sequence is not
+  // started.
   if (!start.abandoned) start_loaded(start, std::move(sequence), now);
 }
 

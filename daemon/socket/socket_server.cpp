@@ -137,8 +137,8 @@ Descriptor SocketServer::accept_one(const Endpoint& endpoint) {
 }
 
 /// Returns true if the server may disconnect the client to admit another one: the client has ended, or was
-/// silent for too long, or `force` is true. A client that keeps its connection is not disconnected, because
-/// its running sequence would lose its owner.
+/// silent for too long, or `force` is true. A client that keeps its connection is not disconnected, because,
+/// for example, a running sequence would lose its owner.
 bool SocketServer::may_disconnect(std::uint64_t id, const Client& client, bool force) const {
   if (client.input_ended_at != 0) return true;
   if (handlers_.keeps_connection && handlers_.keeps_connection(id)) return false;
