@@ -18,11 +18,12 @@ using model::Reading;
 /// The result of an exchange with the board.
 enum class BusStatus : std::uint8_t {
   ok,
-  disconnected,      ///< no session is open, so connect() must be called first
-  timed_out,         ///< the deadline passed before the exchange with the board was complete
-  bad_reply,         ///< the reply has an unexpected unit id, length, transaction id or function code; the
-                     ///< session must be closed
-  exception,         ///< the board responded with a Modbus exception
+  disconnected,  ///< no connection to the board is open, or the connection was lost; connect() must be called
+                 ///< next
+  timed_out,     ///< the deadline passed before the exchange with the board was complete
+  bad_reply,     ///< the reply has an unexpected unit id, length, transaction id or function code; the
+                 ///< session must be closed
+  exception,     ///< the board responded with a Modbus exception
   write_refused,     ///< a command is invalid or out of range, or the read-back differs from the written
                      ///< value
   overwritten,       ///< another client has written to the outputs since the last exchange

@@ -27,7 +27,8 @@ void encode(double raw, RegisterKind kind, WordOrder order, std::span<std::uint1
 /// uses this function for its inputs.
 [[nodiscard]] double quantised_raw(const TerminalBlock& terminals, double electrical) noexcept;
 
-/// The value of an input after scaling. Both members are NaN if the board delivered no number for the input.
+/// The value of an input after scaling. Both numbers are NaN if the board delivered no number or an error
+/// code for the input.
 struct JudgedInput {
   double electrical = std::numeric_limits<double>::quiet_NaN();  ///< electrical value of the input [V or mA]
   double physical = std::numeric_limits<double>::quiet_NaN();    ///< value of the input after scaling [mm,

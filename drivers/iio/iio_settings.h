@@ -25,8 +25,8 @@ struct IioTerminal {
 /// valves if the value has not changed for `timeout_s`.
 struct IioHeartbeat {
   IioTerminal terminal;
-  long first = 0;        ///< raw number of the first, third, fifth ... write
-  long second = 0;       ///< raw number of the second, fourth ... write
+  long first = 0;        ///< raw number of the second, fourth, sixth ... write
+  long second = 0;       ///< raw number of the first, third, fifth ... write
   double timeout_s = 0;  ///< time-out of the external circuit [s]
 };
 

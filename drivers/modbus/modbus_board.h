@@ -28,12 +28,11 @@ struct ModbusSettings {
 /// One exchange first writes the outputs of all modules, if possible with one write per module (function code
 /// 16 or 23). After the writes, the exchange reads the inputs and the registers for status, read-back and
 /// watchdog, with as few reads as possible. Because all writes precede the reads, a failure of a module
-/// without outputs does not prevent the writes to the other modules.
-///
-/// `deadline` is a time of CLOCK_BOOTTIME. The complete exchange must end before this time, also if a reply
-/// arrives in parts. After a time-out, an error of the connection or an unexpected reply, all links are
-/// closed. Therefore, a late or duplicated reply cannot be taken for the response to a later request.
-/// exchange() then returns `disconnected` until connect() has opened new links.
+/// without outputs does not prevent the writes to the other modules. The complete exchange must end within
+/// `deadline`, also if a reply arrives in parts. The time is measured with CLOCK_BOOTTIME. After a time-out,
+/// an error of the connection or an unexpected reply, all links are closed. Therefore, a late or duplicated
+/// reply cannot be taken for the response to a later request. exchange() then returns `disconnected` until
+/// connect() has opened new links.
 ///
 /// A tripped watchdog is cleared only in the first exchange after connect(). This exchange writes the
 /// commands, clears the watchdog, writes the commands a second time and reads. If the watchdog trips after

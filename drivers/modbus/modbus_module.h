@@ -104,8 +104,8 @@ class ModbusModule {
   ExchangePlan plan_;
   ModbusLink& link_;
   std::vector<std::uint16_t> output_words_;
-  std::vector<double> requested_raws_;  ///< for each output, the raw number that was written, after limiting
-                                        ///< and rounding
+  std::vector<double> requested_raws_;  ///< for each channel, the raw number of its output that encode()
+                                        ///< computed, after limiting and rounding
   ReadBackHistory accepted_;
   std::vector<double> found_kpa_;
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one reply per read of the plan; a bit is stored as 0

@@ -43,7 +43,7 @@ class Registers {
 
   struct Answer {
     Bytes pdu;
-    bool wrote = false;  ///< true: the request wrote registers, with new or with unchanged values
+    bool wrote = false;  ///< true: the request wrote registers or a coil, with new or with unchanged values
   };
   /// Returns the response to one request PDU (function code and data, at least one byte). A request is
   /// executed either completely or not at all.
