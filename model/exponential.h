@@ -72,9 +72,9 @@ struct ExponentialWeights {
   T mean_begin, mean_rise, mean_bend;  ///< weights of begin, end - begin and bend in the mean of x over the
                                        ///< segment
 
-  /// @param duration_s  duration of the segment, >= 0.  @param rate  1/tau, >= 0.  @param gain_rate  as in
-  /// the
-  /// description of the class.
+  /// @param duration_s  duration of the segment, >= 0.
+  /// @param rate  1/tau, >= 0.
+  /// @param gain_rate  as in the description of the class.
   static ExponentialWeights make(const T& duration_s, const T& rate, const T& gain_rate) {
     const T z = duration_s * rate;
     const PhiFunctions<T> f = phi_functions(z);

@@ -19,7 +19,7 @@ struct LineLoss {
 
   static constexpr double atmosphere_kpa = 101.325;
 
-  /// Returns the pressure before the line for the pressure `p` at the finger. For p up to the atmospheric
+  /// Returns the pressure before the line for the pressure `p` at the finger. For p from 0 to the atmospheric
   /// pressure a, the result is p + share p a / (p + a).
   template <class U>
   [[nodiscard]] U before(const U& p) const {

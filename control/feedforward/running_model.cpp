@@ -14,8 +14,8 @@ bool runs(const BlockInfo& info) {
   return info.inverse != Inverse::preview && info.inverse != Inverse::ignored;
 }
 
-/// Returns true for a valve block with a memory, such as a lag or a dead band. Memoryless blocks between
-/// valve and finger are inverted together with the finger.
+/// Returns true for a valve block that is not inverted together with the finger. Valve blocks with
+/// Inverse::implicit, such as a leak, are inverted together with the finger.
 bool is_of_valve(const BlockInfo& info) {
   return info.station == Station::valve && info.inverse != Inverse::implicit;
 }

@@ -64,8 +64,9 @@ class RunningModel {
 
 /// Returns the sum of the model's dead times [s].
 [[nodiscard]] double dead_time_s(const model::Model& model);
-/// valve_of() returns the valve blocks of a model with a memory, such as lags and dead bands. body_of()
-/// returns all other blocks of the model. Both functions leave out dead times and noise.
+/// valve_of() returns the valve blocks of a model that are not inverted together with the finger: lags, dead
+/// bands, rate limits and saturation. body_of() returns all other blocks of the model. Both functions leave
+/// out dead times and all blocks with Inverse::ignored, such as noise.
 [[nodiscard]] model::Model valve_of(const model::Model& model);
 [[nodiscard]] model::Model body_of(const model::Model& model);
 
