@@ -1,6 +1,7 @@
 #pragma once
 // Defines the clocks. All times of control, and all times in logs, come from CLOCK_BOOTTIME of the machine or
-// from the virtual clock of a test. The wall clock is read only for messages and file names.
+// from a virtual clock, in tests and in runs in virtual time. The wall clock is read only for messages and
+// file names.
 
 #include <algorithm>
 #include <string>
@@ -34,8 +35,8 @@ class MonotonicClock final : public Clock {
   void sleep_until(Nanoseconds due) const noexcept override;
 };
 
-/// A clock for tests, whose time changes only when a test sets the time. sleep_until() sets the time to the
-/// end of the sleep.
+/// A clock for tests and for runs in virtual time. Its time changes only by set(), advance() and
+/// sleep_until(). sleep_until() returns at once.
 class VirtualClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }

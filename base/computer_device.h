@@ -13,7 +13,7 @@ namespace softgrip {
 
 /// A word by which a configuration file can name a device.
 struct DeviceWord {
-  std::string kind;  ///< kind of the word: "label", "name", "serial number" or "address"
+  std::string kind;  ///< kind of the word, such as "label", "name", "serial number" or "address"
   std::string text;
 };
 

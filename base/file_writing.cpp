@@ -1,5 +1,4 @@
-// Implements the functions of base/files.h that create files. All files of the project are created by this
-// code.
+// Implements the functions of base/files.h that create files and folders.
 
 #include <fcntl.h>
 #include <sys/random.h>

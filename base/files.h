@@ -37,9 +37,9 @@ struct RegularFile {
 /// Returns the contents of a regular file of at most `bound` bytes. The error is a sentence with the reason.
 [[nodiscard]] tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound);
 
-/// is_there() returns true if the path leads to a file or a folder, and is_folder() if it leads to a folder.
-/// Symbolic links are followed. Unlike the functions of std::filesystem, these two functions do not throw
-/// exceptions. They return false for an unreadable folder or an invalid name.
+/// is_there() returns true if the path leads to anything that exists, and is_folder() if it leads to a
+/// folder. Symbolic links are followed. Unlike the functions of std::filesystem, these two functions do not
+/// throw exceptions. They return false for an unreadable folder or an invalid name.
 [[nodiscard]] bool is_there(const std::string& path) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 

@@ -18,7 +18,8 @@ namespace softgrip {
 [[nodiscard]] std::string significant(double value, int digits = 4);
 /// Returns the number with `decimals` digits after the point. Returns "-" for NaN or infinity.
 [[nodiscard]] std::string fixed(double value, int decimals);
-/// Reads a number from a text. Blanks are permitted around the number; any other text gives an empty result.
+/// Reads a number from a text. Blanks and tabs around the number and a leading "+" are permitted; any other
+/// text gives an empty result.
 [[nodiscard]] std::optional<double> to_number(std::string_view text);
 
 }  // namespace softgrip

@@ -55,8 +55,9 @@ struct PairSums {
 };
 
 /// Returns the 97.5 % quantile of Student's t distribution. The standard error times this quantile is half of
-/// the width of a 95 % interval. The function uses the Cornish-Fisher expansion (Abramowitz and Stegun
-/// 26.7.5), whose error at 3 degrees of freedom is below 1 %.
+/// the width of a 95 % interval. The function uses the Cornish-Fisher expansion (Abramowitz and
+/// Stegun 26.7.5), whose error at 3 degrees of freedom is below 1 %. Fewer than 2 degrees of freedom are
+/// treated as 2.
 [[nodiscard]] double t_quantile(double degrees_of_freedom);
 
 }  // namespace softgrip

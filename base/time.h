@@ -6,7 +6,7 @@
 
 namespace softgrip {
 
-/// A time or a duration in nanoseconds. Times are on CLOCK_BOOTTIME, or on the virtual clock of a test.
+/// A time or a duration in nanoseconds. Times are on CLOCK_BOOTTIME, or on a virtual clock.
 using Nanoseconds = std::int64_t;
 
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;

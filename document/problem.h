@@ -24,7 +24,7 @@ struct Problem {
   std::string line_text;  ///< text of the line that contains the problem, without its line break; may be
                           ///< empty
   std::string message;    ///< the problem in one sentence
-  std::string hint;       ///< text that the user probably meant; empty if it is unknown
+  std::string hint;       ///< advice for the correction of the document; empty: no advice
 
   bool operator==(const Problem&) const = default;
 };

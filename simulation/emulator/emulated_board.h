@@ -34,7 +34,7 @@ class EmulatedBoard {
   /// Returns true if a client has written an output since the board was created.
   [[nodiscard]] bool commanded() const noexcept { return commanded_; }
 
-  /// Returns the signal of an output terminal [V or mA].
+  /// Returns the signal of an output terminal [V, mA or kPa].
   [[nodiscard]] double output(std::size_t terminal) const { return outputs_.at(terminal); }
   /// Writes the number of connected clients to the register that the map defines for this number. Has no
   /// effect if the map defines no such register.
@@ -43,7 +43,7 @@ class EmulatedBoard {
   /// them.
   void ignore_writes(bool ignored) noexcept { writes_ignored_ = ignored; }
 
-  /// Sets the signal at an input terminal [V or mA].
+  /// Sets the signal at an input terminal [V, mA or kPa].
   void set_input(std::size_t terminal, double electrical);
   /// Sets an input to the error value of the board. If the map gives no error value, sets the input to the
   /// upper end of the input's range.
@@ -69,7 +69,7 @@ class EmulatedBoard {
 
   drivers::BoardMap map_;
   Registers registers_;
-  std::vector<double> outputs_;  // signals of the output terminals [V or mA]
+  std::vector<double> outputs_;  // signals of the output terminals [V, mA or kPa]
   Nanoseconds fed_at_ = 0;
   std::optional<bool> alternated_;  // true: the last write of the heartbeat had the second of the two
                                     // alternating values

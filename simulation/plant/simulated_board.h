@@ -25,8 +25,8 @@ struct SimulatedEvent {
     sensor_fault,   ///< sets the sensor fault of the finger to `sensor`
     bus_lost,       ///< from this event on, every exchange returns `status`; if `status` is `disconnected`,
                     ///< connect() fails too
-    bus_restored,   ///< from this event on, exchanges succeed again; if the event bus_lost has ended the
-                    ///< session, connect() must be called first
+    bus_restored,   ///< from this event on, exchanges succeed again; if an exchange returned `disconnected`,
+                    ///< `timed_out` or `bad_reply`, connect() must be called first
     write_refused,  ///< from this event on, outputs keep their values, and an exchange with a new value
                     ///< reports `write_refused`
     write_taken,    ///< from this event on, the outputs follow the commands again
