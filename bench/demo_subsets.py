@@ -85,7 +85,7 @@ def page(results, verdicts, real, options, version):
                  "and the valve lag, both without an alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
                  f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
                  "config/models/zhang2025.yaml`"),
-             f"The simulated finger of the demo has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that `softgrip diagnose` receives has neither a delay nor a lag. If the logs do not show that the finger has a lag, the confidence interval of the delay contains the delays of two fits: one with and one without a lag.", "",
+             f"The simulated finger of the demo has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that `softgrip diagnose` receives has neither a delay nor a lag. If the logs do not show that the finger has a lag, the confidence interval of the delay contains the delays of two fits: one with and one without a lag. The *inclusion* of a cause is the share of bootstrap samples in which the model with the cause is better than the model without the cause or with another cause.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "

@@ -214,7 +214,7 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads the logs and a model of the finger without the effect. The parameters of the model deviate from the parameters of the simulated finger by a few per cent. The strength of an effect is the RMS of the displacement change that the effect causes, divided by the sensor noise (0.04 mm). The part of the displacement change that a refit of the model parameters can explain is subtracted before the RMS is computed.",
+             "In each case, a separate program simulates a finger and writes logs; most fingers have a hidden effect. `softgrip diagnose` reads the logs and a model of the finger without the effect. The parameters of the model deviate from the parameters of the simulated finger by a few per cent. The strength of an effect is the RMS of the displacement change that the effect causes, divided by the sensor noise (0.04 mm). The part of the displacement change that a refit of the model parameters can explain is subtracted before the RMS is computed.",
              "", variation, "", "| measure | target | measured (95 % interval) | number of cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
@@ -223,7 +223,7 @@ def write(path, results, planned, command, variation, version):
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
               f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause is counted as found if it is named alone or is listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
-              "An outcome is *right* if only the true cause is named. In a case without an effect (*clean*), an outcome is right if no cause is named and no error remains unexplained. "
+              "An outcome is *right* if exactly the true causes are named, each without an alternative. In a case without an effect (*clean*), an outcome is right if no cause is named and no error remains unexplained. "
               "In a case with an effect that softgrip does not model (*outside*), an outcome is right if the verdict is `unexplained`. An outcome is *partly* right if only some of several "
               "true causes are named. An outcome is *missed* if no cause is named although the finger has an effect. An outcome is *wrong* if a cause is named that the finger does not have, "
               "alone or together with the true cause."]

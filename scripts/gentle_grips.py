@@ -84,7 +84,7 @@ def page(groups, problems, off, wire, version):
 ## Over the network
 
 The first {args.wire} of the {args.seeds} grips are repeated in real time. `softgripd` runs at 100 Hz and drives `softgrip-rig` over Modbus TCP,
-{args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. Every fifth part is removed 1 s after the result HOLDING. After the removal, the result must change to PART LOST. Result: {summary(wire[0])}, {len(wire[1])}
+{args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. About one fifth of the parts, chosen at random, are removed 1 s after the result HOLDING. After the removal, the result must change to PART LOST. Result: {summary(wire[0])}, {len(wire[1])}
 requirements violated.
 
 {table(wire[0])}"""
@@ -98,9 +98,9 @@ requirements violated.
         "simulated rig; virtual time, and real time over Modbus TCP" if wire else "simulated rig, virtual time")
     return "\n".join(head) + f"""
 The sequence `config/sequences/pick_stone.yaml` runs on the simulated rig of `config/rig.yaml` in virtual time. The approach of the sequence ends {gripping.APPROACH_MM} mm before the expected position of the part. The grip closes up to {gripping.REACH_MM} mm beyond the expected position. Each seed determines the part, the number of fingers (one or two), and the distance of the part from its expected position. The gripping pressure is the true pressure at the finger minus the pressure that a finger without contact would need to rest at the same position. The table contains the largest gripping pressure after the first contact ([definition](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence permits a gripping
-pressure of {ALLOWED_KPA:g} kPa. The test tolerates additional {gripping.TOLERANCE_KPA:g} kPa because of noise and the resolution of the board.
+pressure of {ALLOWED_KPA:g} kPa. Because of noise and the resolution of the board, the test tolerates {gripping.TOLERANCE_KPA:g} kPa more.
 
-Result: {summary(groups)}, {len(problems)} requirements violated. A grip violates a requirement if the gripping pressure exceeds the limit of the sequence, if HOLDING is reported without a part, or if NO PART is reported although a part is present.
+Result: {summary(groups)}, {len(problems)} requirements violated. The results HOLDING and NO PART are counted for each finger. A grip violates a requirement if the gripping pressure exceeds the limit of the sequence by more than {gripping.TOLERANCE_KPA:g} kPa, if HOLDING is reported without a part, if NO PART is reported although a part is present, or if a finger has no result.
 
 {table(groups)}
 The grips of every third seed are repeated with fingers that move 2 % more or less than the model of the controller predicts:

@@ -279,7 +279,7 @@ def page(args, seen, eventful, healthy, wall_s):
                    f"day of the alarm | grips between change and alarm | indicators in "
                    f"alarm before the repair | candidate faults in the night of the alarm | candidate faults before the repair |\n"
                    f"|---|---|---|---|---|---|---|---|---|\n{event_rows(seen[t])}\n"
-                   f"False alarms: {'; '.join(eventful[t]['false']) or 'none'}. Warnings without an alarm: "
+                   f"False alarms: {'; '.join(eventful[t]['false']) or 'none'}. Warnings that are not alarms: "
                    f"{'; '.join(eventful[t]['warnings']) or 'nothing'}.\n\n" for t in TOGETHER)
     found = sum(bool(one and one["right"]) for _, one in seen[True])
     head = results_page.head(
@@ -297,7 +297,7 @@ The gain of the left finger changes by {100 * GAIN_PER_C["left"]:g} % per °C, a
 
 ## Detected changes
 
-{told}The column "day of the warning" contains the day on which `softgrip health` first reported that the difference between the two fingers had changed. A report with the word `unclear` does not name the changed finger. A report with the word `shared` means that the indicator changed equally for both fingers, because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
+{told}The column "day of the warning" contains the first day, from the first day of the change on, on which `softgrip health` reported that the difference between the two fingers had changed (for a change of both fingers: that the rig had changed). A report with the word `unclear` does not name the changed finger. A report with the word `shared` means that the indicator changed equally for both fingers, because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
 
 ## Healthy days
 

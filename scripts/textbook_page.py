@@ -70,7 +70,7 @@ def summary(rows):
         line(f"cases with {word} effects: {'both' if size == 2 else 'all'} effects are found", "-", share(sum(len(r["found"]) == size for r in among), len(among)), among)
         line(f"cases with {word} effects: a wrong cause is named", "-", wrong_of(among), among)
     closed = [r for r in rows if r.get("feedforward")]
-    line("a feedforward can be computed from the extended model", "100 %", share(sum(r["feedforward"] != "none" for r in closed), len(closed)),
+    line("a feedforward can be computed from the model that the diagnosis has extended", "100 %", share(sum(r["feedforward"] != "none" for r in closed), len(closed)),
          closed)
     return lines
 
@@ -123,7 +123,7 @@ def cause_table(rows):
                       share(sum(len(r["found"]) for r in among), len(among)),
                       sum(len(r["alone"]) for r in among), in_part, instead(among)))
     return table(("cause", *(f"found at strength {s:g}" for s in strengths), "found in total", "named without alternatives",
-                  "only listed as a partial cause", "wrongly named causes"), lines)
+                  "only listed in `partial_causes`", "wrongly named causes"), lines)
 
 
 def wrong_table(rows):
@@ -149,7 +149,7 @@ def made(results, planned):
     of_planned = f" of {planned} planned" if len(results) < planned else ""
     unreachable = sum(not r.get("reachable", True) for r in results)
     return (f"{len(results)} simulated cases{of_planned}, of which {len(failed)} failed. In {unreachable} cases, the effect did not reach "
-            f"its strength. On one core of a shared machine, a diagnosis took {statistics.median(walls):.0f} s (median) and at most "
+            f"the required strength. On one core of a shared machine, a diagnosis took {statistics.median(walls):.0f} s (median) and at most "
             f"{max(walls):.0f} s.")
 
 

@@ -85,12 +85,11 @@ def page(args, rows, command):
             "Duration of a diagnosis", f"A diagnosis of three logs takes {median:.1f} s (median) and at most {longest:.1f} s.",
             results_page.version_of(args.build), command,
             f"{len(rows)} cases that are simulated with equations from textbooks, three logs each, "
-            f"{statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} threads of "
-            f"{os.cpu_count()} processors, closed loop and report included"),
+            f"{statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} threads on {os.cpu_count()} processors; the durations include the simulation of the closed loop and the report"),
         f"Required: a median of at most {WANTED['median']} s and a longest duration of at most {WANTED['longest']} s. "
         f"Measured: a median of {median:.1f} s and a longest duration of {longest:.1f} s.", "",
         *table(("cases", "number of cases", "median duration [s]", "longest duration [s]", "median processor time [s]"), summary(rows)),
-        *table(("stage of the diagnosis", "fraction of the total time"), shares(rows)),
+        *table(("stage of the diagnosis (`stages_s` in the result)", "fraction of the total time"), shares(rows)),
         "The table lists the five longest diagnoses:", "",
         *table(("hidden cause", "strength", "type of finger", "columns", "seed", "verdict", "duration [s]"), [
             (" + ".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], r["columns"], r["seed"], r["verdict"],

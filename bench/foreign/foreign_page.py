@@ -49,12 +49,12 @@ def requirements(values):
         part = summary["changes"]
         rows += [("labelled changes beyond the run-to-run spread: detected", "80 %",
                   of(part["detected"], part["beyond_spread"])),
-                 ("detected changes: labelled cause named or listed", "50 %", of(part["named_or_listed"], part["detected"])),
+                 ("detected changes beyond the run-to-run spread: labelled cause named or listed", "50 %", of(part["named_or_listed"], part["detected"])),
                  ("labelled changes: only a wrong cause named", "at most 10 %", of(part["wrong_alone"], part["cases"])),
                  ("labelled changes within the spread: reported as unchanged", "all",
                   of(part["within_reported_unchanged"], part["within_spread"])),
-                 ("all labelled changes: detected", "-", of(part.get("changed", "-"), part["cases"])),
-                 ("all labelled changes: labelled cause named or listed", "-", of(part.get("listed", "-"), part["cases"]))]
+                 ("all labelled changes: detected", "-", of(part["changed"], part["cases"]) if "changed" in part else "-"),
+                 ("all labelled changes: labelled cause named or listed", "-", of(part["listed"], part["cases"]) if "listed" in part else "-")]
     if "stiction" in summary:
         sticking, others = summary["stiction"]["sticking"], summary["stiction"]["others"]
         rows += [("loops with a sticking valve: `valve_deadband` named", "9 of 13",
@@ -118,7 +118,9 @@ def changes_section(values):
                 "-" if case["exceeds_spread"] is None else "yes" if case["exceeds_spread"] else "no",
                 "named" if case["named_correctly"] else "listed" if case["listed"] else
                 "only a wrong cause named" if case["wrong_alone"] else "not named"]
-    return ["## Labelled changes", "", "A change exceeds the run-to-run spread if the RMSE in the column *later* is larger than the value in the column *bound*.",
+    repeats = any(case["judge"] == "repeats" for case in values["cases"])
+    explained = [] if repeats else [*PLAIN_TEXT, ""]  # repeats_section() writes PLAIN_TEXT too
+    return ["## Labelled changes", "", *explained, "A change exceeds the run-to-run spread if the RMSE in the column *later* is larger than the value in the column *bound*. Without a *bound*, the column *exceeds spread* contains `-`. The column *answer* contains *named* if an admissible cause is named, and *listed* if an admissible cause is only listed as an alternative.",
             "",
             *pair_tables(values, "changes", ["label", "admissible causes", "exceeds spread", "answer"], cells)]
 
@@ -203,7 +205,7 @@ def meaning(values, subject="data of other laboratories"):
         parts.append(f"the error of a linear model is more than 10 % smaller than the error of `softgrip identify --structure auto` in {of(part['linear_better']['auto'], part['rows'])} "
                      "fits")
     parts = parts or ["nothing was evaluated"]
-    return " ".join([f"On {subject}, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
+    return " ".join([f"For {subject}, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
 
 
 def head(values, title, command):

@@ -7,12 +7,12 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import results_page
 
 EXPLANATION = """\
-The [table](#the-table) shows the result of every fault (row) in every phase of a grip (column). A cell also states the number of cycles of the control loop until the detection of the fault, and the action of the outputs.
+The [table](#the-table) shows the result of every fault (row) in every phase of a grip (column). For a latched fault, the cell also states the action of the outputs and, if it was measured, the number of cycles of the control loop until the detection.
 `tests/system/fault_matrix.yaml` defines the required result of each cell. If the measured result of a cell differs from the required result, the cell is marked **WRONG** and `scripts/fault_matrix.sh` fails. The test `system.test_fault_matrix` repeats some of the cells in every test run.
 
 - **F103 20/22 vent** (example): the daemon latched fault F103 20 cycles after the first effect of the fault, and vented the outputs. The [thresholds](#thresholds) permit 22 cycles until the detection of F103. The word *board* in a cell means that the watchdog of the board vented the outputs, because no write was possible. A cycle is a tick in the recording. The cycles are counted from the first affected message to the tick in which the fault latched.
 - **waits**: the daemon stays in the state `starting` with its outputs at rest, and becomes idle when the cause is gone.
-- **ridden**: no fault latches, and the grip has its normal result.
+- **ridden**: no fault latches, and the grip has its normal result or the result that the cell states.
 - **unseen**: the software cannot detect the fault. The note of the cell states the reason and the remaining protection.
 - *spoiled*: the board does not output the written values, so the safe action of the daemon has no effect. Only protections outside the software are effective (for example a relief valve, or a dump valve in the emergency-stop circuit).
 
