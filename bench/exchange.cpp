@@ -1,7 +1,7 @@
 // Compares the durations of an exchange over loopback for two clients: the client of this project, and
-// libmodbus. Both clients send the same requests to the same server. Blocks of exchanges of one client
-// alternate with blocks of the other client. Each client begins half of the rounds. The program prints
-// percentiles of the durations of each client.
+// libmodbus. Both clients send the same requests. Each client has its own libmodbus server for each kind of
+// exchange. Blocks of exchanges of one client alternate with blocks of the other client. Each client begins
+// half of the rounds. The program prints percentiles of the durations of each client.
 //
 // An exchange takes longer if server and client run on different processors, because each request and each
 // response must then wake a processor. Without the second argument, the kernel chooses the processor of each

@@ -124,8 +124,9 @@ void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t tick
       rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
-/// Prints the number of seconds of rig time that the daemon simulates and records per second of elapsed time.
-/// The result is the median of several repetitions, with the smallest and the largest value.
+/// Prints the number of seconds of rig time that the daemon simulates and records per second of elapsed time
+/// and per second of processor time. Each result is the median of several repetitions, with the smallest and
+/// the largest value.
 void print_speed(double rate_hz) {
   constexpr int runs = 7;
   std::vector<double> by_clock;

@@ -1,7 +1,7 @@
 // Measures how often the 95 % intervals of identified parameters cover the true values. The logs are
 // simulated with randomly changed models and with white or correlated noise.
 //
-//   Usage: bench_sysid_coverage [LOGS [RATE_HZ [FIRST_SEED]]]
+//   Usage: sysid_coverage [LOGS [RATE_HZ [FIRST_SEED]]]
 //
 // Each fit uses one log of the signal tp1. Each true parameter deviates from the start value by 5 % (standard
 // deviation).

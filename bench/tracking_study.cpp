@@ -1,6 +1,6 @@
 // Measures the tracking accuracy on the simulated finger bench_twin and prints a table. The references are
 // sines of 13 ± 7 mm at 0.05, 0.1 and 0.2 Hz, the control rate is 200 Hz, and the sensor noise is 0.03 mm.
-// The parameters of the controller's model deviate from those of the simulated finger by up to ±5 %. One
+// The parameters of the controller's model vary at random by up to ±5 % around the values of each scheme. One
 // search method finds the gains of all schemes.
 //
 //   Usage: tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
@@ -178,8 +178,8 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
     const double sensitivity = control::loop_margins(finger, pid, {0, 60}, tick_s, tick_s).sensitivity;
     std::printf(
         "  %.2f Hz: RMSE: median %.4f mm (5 %% to 95 %% quantile: %.4f to %.4f mm); "
-        "largest error: median %.3f mm; RMSE with the exact model: %.4f mm; "
-        "kp %.4g, ki %.4g, kd %.3g, sensitivity Ms %.2f; RMS of the model residual: median %.3f mm; "
+        "largest error: median %.3f mm; RMSE with the unvaried model: %.4f mm; kp %.4g, ki %.4g, kd %.3g, "
+        "sensitivity Ms %.2f; RMS of the model residual: median %.3f mm; "
         "command limited in %.1f %%, reference out of reach in %.1f %% of the ticks\n",
         frequency, quantile(rmse, 0.5), quantile(rmse, 0.05), quantile(rmse, 0.95), quantile(worst, 0.5),
         control::track(exact).rmse_mm, pid.kp_kpa_per_mm, pid.ki_kpa_per_mm_s, pid.kd_kpa_s_per_mm,
@@ -223,19 +223,17 @@ int main(int argc, char** argv) {
   const model::Model twin = model_named("bench_twin");
   const model::Model published = model_named("zhang2025");
   std::printf(
-      "bench_twin, 13 ± 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; model errors of ±5 %%: median [5 "
-      "%%, "
-      "95 %%] "
-      "of %d draws, seed %llu; gains by one search on %d other draws, Ms <= %.2f\n",
+      "bench_twin, 13 ± 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; results of %d models whose "
+      "parameters vary by up to ±5 %%, seed %llu; gains by one search on %d other models, Ms <= %.2f\n",
       options.quantised ? ", quantised" : "", options.latency_ms, options.draws,
       static_cast<unsigned long long>(options.seed), options.search_draws, options.max_sensitivity);
   study({"PID alone", FeedforwardKind::none, twin, 60}, options, twin);
   study({"bouc_wen of zhang2025 + PID", FeedforwardKind::bouc_wen, published, 60}, options, twin);
-  study({"bouc_wen of zhang2025 with beta cut to 0.9 alpha + PID", FeedforwardKind::bouc_wen,
+  study({"bouc_wen of zhang2025 (beta reduced to 0.9 alpha) + PID", FeedforwardKind::bouc_wen,
          regularised(published), 60},
         options, twin);
   study({"bouc_wen of bench_twin + PID", FeedforwardKind::bouc_wen, twin, 60}, options, twin);
-  study({"bouc_wen of bench_twin + PID, pressure bound 200 kPa (not binding)", FeedforwardKind::bouc_wen,
+  study({"bouc_wen of bench_twin + PID, pressure limit 200 kPa (never reached)", FeedforwardKind::bouc_wen,
          twin, 200},
         options, twin);
   study({"full_model + PID", FeedforwardKind::full_model, twin, 60}, options, twin);

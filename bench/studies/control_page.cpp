@@ -75,8 +75,16 @@ sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
 
 sysid::Table table_of(const ControlScheme& scheme) {
   sysid::Table table;
-  table.header = {"f [Hz]",      "± [mm]",  "model error [%]",     "RMSE [mm]",  "90 % of draws",
-                  "% of stroke", "largest", "mean, largest [kPa]", "kp, ki, kd", "Ms"};
+  table.header = {"f [Hz]",
+                  "± [mm]",
+                  "model error [%]",
+                  "RMSE [mm]",
+                  "RMSE of 90 % of the fingers [mm]",
+                  "RMSE [% of stroke]",
+                  "largest error [mm]",
+                  "pressure: mean, largest [kPa]",
+                  "kp, ki, kd",
+                  "Ms"};
   table.numeric = {true, true, true, true, true, true, true, true, false, true};
   for (const ControlFigure& f : scheme.figures) {
     table.rows.push_back({significant(f.frequency_hz), significant(f.amplitude_mm),
@@ -123,9 +131,11 @@ sysid::Page control_page(const ControlStudy& study) {
       {"Compared with PID alone, the full inverse of the extended structure reduces the RMSE by a factor "
        "of " +
            gains_in_words(study, "pid", "full_extended", mismatch) + ".",
-       "Plan for a finger that follows the published model, which has no inverse, compared with PID alone: " +
+       "For a finger that follows the published model, which has no inverse, the plan reduces the RMSE of "
+       "PID alone by a factor of " +
            gains_in_words(study, "pid_on_published", "planned_on_published", mismatch) + ".",
-       "Plan with the published structure, identified on the simulated rig, compared with PID alone: " +
+       "The plan with the published structure, identified on the simulated rig, reduces the RMSE of PID "
+       "alone by a factor of " +
            gains_in_words(study, "pid", "planned_identified", mismatch) + "."});
   page.section("Models that the controllers use");
   page.paragraph(
@@ -143,8 +153,8 @@ sysid::Page control_page(const ControlStudy& study) {
       continue;
     }
     page.table(table_of(scheme));
-    page.paragraph("At " + significant(scheme.figures.front().frequency_hz) + " Hz limited by " +
-                   scheme.figures.front().limited_by + ".");
+    page.paragraph("At " + significant(scheme.figures.front().frequency_hz) +
+                   " Hz, the accuracy is limited by " + scheme.figures.front().limited_by + ".");
   }
   return page;
 }

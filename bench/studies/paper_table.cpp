@@ -59,7 +59,7 @@ const std::vector<std::string>& paper_table_remarks() {
       "signals of similar shape. The patterns of the columns can be compared, but not the exact values.",
       "For a finger that follows the published model, only the noise remains, even on signals that were not "
       "fitted. The real finger of the paper had an error several times larger. On signals that were not "
-      "fitted, the error of the real finger was up to three times larger than on TP1. The real finger has an "
+      "fitted, the error of the real finger was up to 2.8 times as large as on TP1. The real finger has an "
       "effect that the "
       "published structure lacks.",
       "An ordinary actuator behind lag and dead time shows the pattern of the paper's "

@@ -217,8 +217,8 @@ InverseTrial try_inverse(double ratio, const std::vector<double>& true_kpa, doub
   return trial;
 }
 
-/// Computes the response of the published element to its first loading. Stores the pressures at which the
-/// response stops falling and returns to 0.
+/// Computes the response of the published element to its first loading. Stores the pressure at which the
+/// response stops falling, the pressure at which it returns to 0, and its lowest value.
 void first_loading(PublishedStudy& study) {
   model::Chain<double> chain(element(ratios.back()));
   chain.reset(0);

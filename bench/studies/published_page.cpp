@@ -33,7 +33,8 @@ std::string verdict(const PublishedStudy& study) {
   return "An unmodelled latency makes the published structure appear non-invertible: an ordinary "
          "actuator is identified with beta/(alpha + 1/k0) of up to " +
          ratio_text(largest) +
-         ", and the published response itself is that of an invertible actuator behind lag and delay to " +
+         ", and an invertible actuator behind lag and delay reproduces the published response with an RMSE "
+         "of at most " +
          fixed(worst, 3) + " mm.";
 }
 
@@ -77,16 +78,16 @@ sysid::ChartRows fit_charts(const sysid::Log& log, const std::vector<double>& an
 void latency_section(sysid::Page& page, const PublishedStudy& study) {
   page.section("1. A latency that hysteresis absorbs");
   page.paragraph(
-      "An ordinary, invertible actuator behind a valve lag and a dead time, triangles of 0.2 to 0.6 bar at "
-      "0.1 "
-      "to 0.4 Hz, noise " +
+      "An ordinary, invertible actuator behind a valve lag and a dead time is driven by triangles of 0.2 to "
+      "0.6 bar at 0.1 to 0.4 Hz. The noise of its readings is " +
       significant(study.options.noise_mm) +
-      " mm, identified with the published structure, which has no lag and no dead time. If the fitted ratio "
+      " mm. The published structure, which has no lag and no dead time, is fitted to the readings. If the "
+      "fitted ratio "
       "is 1 or more, the fitted model has an inverse response and no causal inverse.");
   page.table(result::table_of("Ratio: beta/(alpha + 1/k0). Published: ratio " +
                                   fixed(study.published_ratio, 2) +
-                                  ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 "
-                                  "0.016, tau2 0.4 s.",
+                                  ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm. True values of the "
+                                  "simulated actuator: k2 0.04 bar/mm, c2 0.016 bar s/mm, tau2 0.4 s.",
                               study.latency));
   page.figure({"fitted ratio by hidden latency",
                "Fitted ratio beta/(alpha + 1/k0) over the hidden latency.",
@@ -145,8 +146,8 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
     charts.push_back(std::move(chart));
   }
   page.figure({"inverses",
-               "Below 1, both forms find the pressure. The error of the explicit form grows as the ratio "
-               "approaches 1. Above 1, no inverse exists.",
+               "If beta/alpha is below 1, both forms find the pressure. The error of the explicit form grows "
+               "as beta/alpha approaches 1. If beta/alpha is above 1, no inverse exists.",
                sysid::stacked(std::move(charts))});
   page.list(
       {"Existence: the element alone has an inverse up to beta = alpha. The published element has beta/alpha "
@@ -158,8 +159,8 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
        "Explicit form: if beta/alpha exceeds 1, each sample multiplies the error of the pressure by "
        "beta/alpha until the bounded hysteresis state stops this growth. The computed pressure then "
        "oscillates by tens of kPa.",
-       "Implicit form: up to beta = alpha, this form returns the pressure except for rounding errors. Above "
-       "this limit, "
+       "Implicit form: up to beta = alpha, the computed pressure is correct except for rounding errors. "
+       "Above this limit, "
        "several pressures or no pressure fit the displacement. The implicit form then selects one pressure, "
        "jumps, or stays at a bound of 0 to 60 kPa and reports this.",
        "Controller: before a start, the controller checks the model. Result for bouc_wen of the published "

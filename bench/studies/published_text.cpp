@@ -21,7 +21,7 @@ result::Value in_bar(double per_kpa) {
 std::string paper_text(const std::vector<PaperRow>& rows) {
   std::string text =
       "4. RMSE [mm] of the published structure, identified on tp1 (% of span)\n"
-      "   signal   the paper's finger   the published model   bench_twin: latency behind it\n";
+      "   signal   the paper's finger   the published model      bench_twin (with latency)\n";
   for (const PaperRow& row : rows) {
     const auto figure = [](const PaperFigure& f) {
       return fixed(f.rmse_mm, 4) + " (" + fixed(f.rmse_percent_of_span, 2) + ")";
@@ -131,7 +131,7 @@ Fields fields_of(const InverseTrial& row) {
           {"true_jump_kpa", "true: jump [kPa]", number(row.true_jump_kpa, 2)},
           {"unreached_share", "not reached",
            shown(row.unreached_share, fixed(100 * row.unreached_share, 0) + " %", true)},
-          {"refused", "before a start", shown(row.refused, row.refused ? "refused" : "exists")}};
+          {"refused", "inverse", shown(row.refused, row.refused ? "refused" : "exists")}};
 }
 
 Fields fields_of(const PaperRow& row) {

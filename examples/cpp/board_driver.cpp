@@ -1,6 +1,6 @@
-// Shows a board driver. The board of this example is connected through a socket and answers "SET 12.5\n" with
-// "POS 3.2\n". A thread of the program simulates this board. board_driver writes three commands to the board
-// and prints the readings.
+// Shows a board driver. The board of this example is connected through a socket and answers "SET 12.500\n"
+// with "POS 2.500\n". A thread of the program simulates this board. board_driver writes three commands to the
+// board and prints the readings.
 
 #include <poll.h>
 #include <sys/socket.h>

@@ -1,6 +1,7 @@
 // Grips a part and waits for the grip result. `grip_and_wait SOCKET SEQUENCE` sends requests to softgripd
-// (docs/reference/socket-api.md). The exit code 1 means that the gripper holds no part. Each line that
-// softgripd sends is a JSON object; a larger program should parse the lines with a JSON library.
+// (docs/reference/socket-api.md). Exit code 0: HOLDING was reported before the end of the sequence; 1:
+// HOLDING was not reported, or an error occurred. Each line that softgripd sends is a JSON object; a larger
+// program should parse the lines with a JSON library.
 
 #include <sys/socket.h>
 #include <sys/un.h>

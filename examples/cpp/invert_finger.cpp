@@ -1,6 +1,6 @@
 // Inverts the model of a finger. `invert_finger MODEL.yaml` computes the pressure command for a sine of the
-// displacement and simulates the finger with this command. The program prints the largest tracking error that
-// occurs after 3 s.
+// displacement and simulates the finger with this command. The program prints the largest command, and the
+// largest tracking error that occurs after 3 s.
 
 #include <algorithm>
 #include <cmath>

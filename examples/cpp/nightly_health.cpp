@@ -19,9 +19,7 @@ int main(int count, char** arguments) try {
   std::filesystem::create_directories(out);
   softgrip::HealthOptions options;
   options.scores = out / "health-scores.jsonl";
-  if (std::filesystem::exists(out / "notes.yaml"))
-    options.notes = out / "notes.yaml";  // file of maintenance
-                                         // records
+  if (std::filesystem::exists(out / "notes.yaml")) options.notes = out / "notes.yaml";  // maintenance records
   const softgrip::Health health = softgrip::health({arguments[1]}, arguments[2], options);
 
   for (const softgrip::FingerHealth& finger : health.fingers) {

@@ -1,4 +1,4 @@
-"""Shows a board driver. The board of this example answers "SET 12.5" with "POS 2.5". A thread of the program simulates
+"""Shows a board driver. The board of this example answers "SET 12.500" with "POS 2.500". A thread of the program simulates
 the board.
 
 board_driver.py writes three commands and prints the readings.

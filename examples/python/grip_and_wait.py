@@ -1,5 +1,5 @@
-"""Grips a part and waits for the grip result: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: the gripper holds no
-part."""
+"""Grips a part, waits for the grip result and releases the part: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: the
+gripper holds no part, or an error occurred."""
 
 import sys
 from typing import Optional

@@ -1,5 +1,5 @@
 """Checks the health of all fingers; run it once per night: nightly_health.py RECORDINGS BASELINE OUT. Exit code 1: an
-alarm is active.
+alarm is active, or an error occurred.
 
 The program stores the indicators of each recording in the folder OUT, so that it reads each recording only once. It
 also writes a page per finger into this folder.
