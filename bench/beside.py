@@ -153,14 +153,14 @@ class Study:
              f"{residuals['lag1_correlation']:.2f}), so they contain as much information as {residuals['effective_samples']:.0f} independent samples"),
             ("the model has no inverse", f"not reported; the script only prints beta {self.scipy['beta']:.3f} and alpha "
              f"{self.scipy['alpha']:.3f} mm/kPa", next((w for w in self.identified["warnings"] if "inverse response" in w), "-")),
-            ("cause of the missing inverse", "not reported, because the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
+            ("cause of the missing inverse", "not reported; the small error of the fit does not show that an effect is missing", f"{self.diagnosis['verdict']}: {causes or '-'}"),
             ("reduction of the held-out RMS error by the named causes", "-", f"steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
             ("a log with a wrong unit, an inverted sign or swapped columns", "not reported; the fit ends with a wrong model, or does not converge",
              "reported with a warning that states the suspicious number ([how](../how-to/import.md#plausibility-warnings))"),
             ("reproduction of the numbers", "possible if the user has kept all files",
-             "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
+             "`softgrip report --verify` checks the hashes, repeats the call and compares every number ([how](../how-to/identify.md))")]
 
     def page(self):
         return "\n".join([

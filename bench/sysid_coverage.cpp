@@ -172,8 +172,9 @@ int main(int argc, char** argv) {
   const std::size_t logs = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 200;
   const double rate_hz = argc > 2 ? std::strtod(argv[2], nullptr) : 100;
   const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
-  std::printf("noise %g mm, true models scattered by %g %%, tp1 at %g Hz, seeds from %llu\n", noise_mm,
-              100 * scatter, rate_hz, static_cast<unsigned long long>(seed));
+  std::printf(
+      "noise %g mm, true parameters deviate by %g %% (standard deviation), tp1 at %g Hz, seeds from %llu\n",
+      noise_mm, 100 * scatter, rate_hz, static_cast<unsigned long long>(seed));
   for (const char* name : {"zhang2025", "bench_twin"}) {
     for (const double correlation : {0.0, 0.9}) run(name, correlation, logs, rate_hz, seed);
   }

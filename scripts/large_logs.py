@@ -139,7 +139,7 @@ def page(args, rows):
                            "scripts/large_logs.py --page", f"{os.cpu_count()} processors, {args.threads} threads, 1-minute load "
                            f"{min(loads):.1f} to {max(loads):.1f}"),
         f"Required: a diagnosis takes at most {MOST_S['diagnose']} s, and the median of all diagnoses is at most {MEDIAN_S} s. "
-        f"`softgrip identify` takes at most {MOST_S['identify']} s.", "",
+        f"`softgrip identify` is required to take at most {MOST_S['identify']} s.", "",
         "| command | case | rows | result | duration [s] | processor time [s] | allowed duration [s] | 1-minute load |", "|---|---|---|---|---|---|---|---|",
         *lines, ""])
 

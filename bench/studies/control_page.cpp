@@ -145,7 +145,7 @@ sysid::Page control_page(const ControlStudy& study) {
       fixed(study.identified_rmse_mm, 3) + " mm, beta/(alpha + 1/k0) " +
       significant(wrong_way_ratio(study.identified), 3) + ". With valve lag and dead time: RMSE " +
       fixed(study.extended_rmse_mm, 3) + " mm, " + significant(wrong_way_ratio(study.extended), 3) + ".");
-  page.section("Figures");
+  page.section("Tables of the schemes");
   for (const ControlScheme& scheme : study.schemes) {
     page.subsection(scheme.id + ": " + scheme.about);
     if (!scheme.refusal.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
 // Defines the models of the simulated fingers of the studies. The parameter values are constants of the
-// program, so that a study does not depend on installed files. A test in tests/tools/studies compares these
+// program, so that a study does not depend on installed files. A test in tests/bench/studies compares these
 // values with config/models.
 
 #include "model/model.h"

@@ -60,11 +60,10 @@ const std::vector<std::string>& paper_table_remarks() {
       "For a finger that follows the published model, only the noise remains, even on signals that were not "
       "fitted. The real finger of the paper had an error several times larger. On signals that were not "
       "fitted, the error of the real finger was up to 2.8 times as large as on TP1. The real finger has an "
-      "effect that the "
-      "published structure lacks.",
+      "effect that the published structure lacks.",
       "An ordinary actuator behind lag and dead time shows the pattern of the paper's "
-      "figures at "
-      "a fraction of their size. The hidden latency explains the published parameters and the shape of the "
+      "values at a fraction of their size. The hidden latency explains the published parameters and the "
+      "shape of the "
       "residual, but not the size of the residual. The paper does not name a further effect."};
   return remarks;
 }

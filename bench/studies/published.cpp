@@ -308,7 +308,7 @@ PublishedStudy study_published(const PublishedOptions& options) {
   study.twin_rmse_mm = rmse_between(bench_twin(), response);
   say("inverses");
   study_inverses(study);
-  say("the paper's four figures");
+  say("the four RMSE values of the paper");
   study.paper =
       paper_table({options.seed, options.rate_hz, options.noise_mm, options.starts, options.threads});
   study.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

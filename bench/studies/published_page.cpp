@@ -169,7 +169,7 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
 }
 
 void paper_section(sysid::Page& page, const PublishedStudy& study) {
-  page.section("4. The paper's four figures");
+  page.section("4. The four RMSE values of the paper");
   page.paragraph(
       "Section 4 of the paper: its structure, identified on TP1, predicts TP2, SP1 and SP2. This study "
       "repeats the procedure with simulated logs of two fingers, noise " +

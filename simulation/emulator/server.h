@@ -51,8 +51,8 @@ class Server {
 
   [[nodiscard]] Nanoseconds now() const;
   [[nodiscard]] Nanoseconds timeout() const;
-  /// Closes the connection of a client, because the limit of descriptors was lowered. Returns false if no
-  /// client is connected through the network.
+  /// Closes the connection of one network client after the limit of descriptors was lowered. Returns false if
+  /// no such client is connected.
   [[nodiscard]] bool give_up_client();
   void accept_modbus(std::size_t link);
   void count_clients();
