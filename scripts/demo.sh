@@ -79,7 +79,7 @@ done
   --check "$out/second_tp2.csv" "$out/second_sp1.csv" --out "$out/baseline"
 "$softgrip" diagnose --baseline "$out/baseline" --data "$out/aged_tp2.csv" "$out/aged_sp1.csv" --out "$out/changed"
 
-say "8. Monitor 30 ordinary grips: after grip 18, the left finger softens by 0.3 % per grip"
+say "8. Monitor 30 ordinary grips: after grip 18, the gain of the left finger decreases by 0.3 % per grip"
 for grip in $(seq -w 30); do
   awk -v gain="$(awk -v n="$grip" 'BEGIN { print 1 - 0.003 * (n > 18 ? n - 18 : 0) }')" '
     /_mm_per_kpa:/ { sub(/[0-9.]+$/, $2 * gain) } /_per_mm:/ { sub(/[0-9.]+$/, $2 / gain) } { print }' "$twin" >"$work/worn.yaml"

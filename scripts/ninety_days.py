@@ -3,13 +3,13 @@
 
     scripts/ninety_days.py [--build build/release] [--healthy 6] [--seed 1] [--keep DIR] [--page PAGE.md]
 
-Two fingers grip four times a day, three times with one recipe and once with another. Each simulation is called a life.
-In every life, the temperature changes the gain of the fingers. The temperature varies with the hour and with the
-weather, which persists for days. The positions of the parts vary slightly, and the fingers wear a little. In the life
-with events, a leak begins and grows, a sensor is displaced, a finger is replaced, another finger softens, and a common
-supply line begins to leak. Each repair has a maintenance record. `softgrip run` makes every recording on a rig with a
-thermometer. The recordings are judged four times: with and without the temperature, for both fingers together and for
-each alone. The exit code is 1 if an event was not detected.
+Two fingers grip four times a day, three times with one recipe and once with another. Each simulation is called a
+life. In every life, the temperature changes the gain of the fingers. The temperature varies with the hour and with
+the weather, which persists for days. The positions of the parts vary slightly, and the fingers wear a little. In the
+life with events, a leak begins and grows, a sensor is displaced, a finger is replaced, the gain of another finger
+decreases, and a common supply line begins to leak. Each repair has a maintenance record. `softgrip run` makes every
+recording on a rig with a thermometer. The recordings are judged four times: with and without the temperature, for
+both fingers together and for each alone. The exit code is 1 if an event was not detected.
 """
 import argparse
 import concurrent.futures
@@ -63,7 +63,7 @@ class Event:
 EVENTS = (
     Event("a leak begins; the lost pressure increases by 0.4 % per day, up to 5 %", "left", 30, 45, ("leak",)),
     Event(f"the sensor is displaced by {KNOCKED_MM} mm", "right", 40, 50, ("sensor_drift",)),
-    Event("the finger softens by 0.3 % per day", "right", 68, DAYS, ("ageing", "thermal_gain", "stress_softening")),
+    Event("the gain of the finger decreases by 0.3 % per day", "right", 68, DAYS, ("ageing", "thermal_gain", "stress_softening")),
     Event(f"the common air line of both fingers leaks; {100 * COMMON_LEAK:g} % of the pressure is lost", BOTH, 80, DAYS, ("pressure_loss_kpa",)),
 )
 NOTES = [(45, "left", "tube replaced"), (50, "right", "sensor put back"), (60, "left", "finger replaced")]
