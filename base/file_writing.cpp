@@ -88,7 +88,7 @@ void sync_folder(const fs::path& folder) {
 
 enum class Existing { replaced, refused };
 
-/// Creates or replaces a file. This is the only function that creates files under their final names. `target`
+/// Creates or replaces a file. All functions of base/files.h that write a complete file call put(). `target`
 /// is relative to the descriptor `folder`, or to the working directory if `folder` is AT_FDCWD.
 Error put(int folder, const fs::path& target, std::string_view contents, Existing existing,
           const std::optional<Rights>& rights, Sync sync) {

@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon {
 
-/// The thread of the panel. It does nothing for a rig without digital lines. All referenced objects must
+/// The thread of the panel. For a rig without digital lines, there is no thread. All referenced objects must
 /// exist longer than this object.
 class PanelRun {
  public:

@@ -19,7 +19,7 @@
 namespace softgrip::daemon {
 
 enum class Role : std::uint8_t {
-  look,     ///< read-only; for clients of the socket `socket: look:` of the rig file
+  look,     ///< read-only; for clients of the socket `socket: read_only:` of the rig file
   operate,  ///< may move the gripper; for clients of the socket `socket: path:` of the rig file
 };
 /// Names of the roles in replies.

@@ -106,7 +106,7 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
   const auto found = clients_.find(client);
   if (found == clients_.end() || found->second.role != Role::operate) {
     return error_json("not_allowed",
-                      "this socket is read-only; connect to the other socket to move the gripper");
+                      "this socket is read-only; connect to `socket: path` of the rig to move the gripper");
   }
   const bool is_stop_or_vent = request.command == Command::stop || request.command == Command::vent;
   const std::string* const other = owner();

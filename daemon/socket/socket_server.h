@@ -1,6 +1,6 @@
 #pragma once
-// Exchanges lines over a Unix domain socket. It limits sizes, times and the number of clients. It does not
-// interpret the lines.
+// Exchanges lines over a Unix domain socket, with limits for sizes, times and the number of clients. The
+// server does not interpret the lines.
 
 #include <cstdint>
 #include <functional>
