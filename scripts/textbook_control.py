@@ -6,7 +6,7 @@ the feedforward of the identified model, PID alone, and the scheme of the paper.
                                 [--frequencies-hz 0.05 0.1 0.2 0.5]
 
 For each finger (tests/blind/textbook), two models are identified from simulated logs of this finger: with `softgrip
-identify --structure auto` and with `--structure bouc_wen`. After the identification, tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus TCP, and softgripd tracks one sine with all four copies at 200 Hz. In the first run,
+identify --structure auto` and with `--structure bouc_wen`. After the identification, tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus TCP, and `softgrip run` tracks one sine with all four copies at 200 Hz. In the first run,
 four PID controllers track a sine of 0.2 Hz. `softgrip tune` computes the gains of the four PID controllers for maximum sensitivities of 2, 1.6, 1.3 and 1.15. In the second run, four controllers track the sines of all frequencies. The first and the second controller are the PID controllers with the smallest errors in the first run. The third controller is the feedforward of the
 identified model with PID. The fourth controller is the scheme of the published paper: the inverse of the Bouc-Wen
 element with PID. `softgrip tune` also computes the gains of the third and the fourth controller. The error is the root
@@ -184,7 +184,7 @@ def page(results, frequencies_hz, command, version):
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
              f"The study contains {len(results)} simulated fingers. The amplitude of the sines is 25 % of the displacement span of the finger. The standard deviation of the sensor noise is "
-             f"{NOISE_MM} mm. The RMS error includes the sensor noise, so no controller can have an RMS error below {NOISE_MM} mm.", "",
+             f"{NOISE_MM} mm. The RMS error includes the sensor noise, so no controller can have an RMS error below {NOISE_MM} mm. If the error after subtraction of the noise is below 10 % of the noise, the ratios use 10 % of the noise.", "",
              "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median of all fingers | "
              "error of the best PID / error of identified model and PID, smallest value of all fingers | ratio of the errors after subtraction of the sensor noise, best PID to identified model and PID, median of all fingers | error of the best PID / error of the scheme of the paper, median of all fingers |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
