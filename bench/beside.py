@@ -135,7 +135,7 @@ class Study:
                 ("`softgrip identify`", 0, f"{self.identify_s:.1f}", mm(ours["rmse_mm"]["tp1"]), mm(held_out["steps"]),
                  mm(held_out["sp2"]), f"{ours['multistart']['share_reached_best'] * ours['multistart']['starts']:.0f} of "
                  f"{ours['multistart']['starts']}"),
-                ("`softgrip diagnose`, on `tp1` alone", 0, f"{self.diagnose_s:.1f}", "-", mm(self.extended["steps"]),
+                ("`softgrip diagnose --no-closed-loop`, on `tp1` alone", 0, f"{self.diagnose_s:.1f}", "-", mm(self.extended["steps"]),
                  mm(self.extended["sp2"]), "-")]
         return rows
 
