@@ -159,11 +159,12 @@ void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultS
 }
 
 void declare_safety(RigKeys& keys) {
-  keys.safety = {{"safe_action", "map", "",
-                  "map with the safe action, `vent` or `hold`, of each phase: `idle`, `closing`, `holding` "
-                  "and `releasing`"},
-                 required("on_emergency_stop", &control::SafetySettings::on_emergency_stop,
-                          control::safe_action_names, "action after an emergency stop")};
+  keys.safety = {
+      {"safe_action", "map", "",
+       "map with the safe action, `vent` or `hold`, of each phase: `idle`, `closing`, `holding` "
+       "and `releasing`"},
+      required("on_emergency_stop", &control::SafetySettings::on_emergency_stop, control::safe_action_names,
+               "action after an emergency stop (F501) or after a loss of the digital inputs (F502)")};
   keys.commands = {
       required(
           "max_missed_commands", &LoopSettings::max_missed_commands, {1, 1000},
@@ -184,21 +185,21 @@ void declare_safety(RigKeys& keys) {
                "number of consecutive cycles with a read-back output that differs from the commands after "
                "which F301 occurs"),
       required("readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
-               "largest permitted difference between the read-back output and the commands of the last "
-               "`readback_delay_s`"),
+               "largest permitted distance of the read-back output from the range of the commands of the "
+               "last `readback_delay_s`"),
       required("readback_delay_s", &Fault::readback_delay_s, {0, 10},
-               "period before each comparison; the read-back output is compared with every command of this "
-               "period"),
+               "period before each comparison; the read-back output is compared with the lowest and the "
+               "highest command of this period"),
       optional("pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
                "number of consecutive cycles with a measured pressure that differs from the commands after "
                "which F207 occurs; 0: no comparison"),
       optional("pressure_tolerance_kpa", &Fault::pressure_tolerance_kpa, {0.001, 1000},
-               "largest permitted difference between the measured pressure and the commands of the last "
-               "`pressure_delay_s`",
+               "largest permitted distance of the measured pressure from the range of the commands of the "
+               "last `pressure_delay_s`",
                "none"),
       optional("pressure_delay_s", &Fault::pressure_delay_s, {0, 10},
-               "period before each comparison; the measured pressure is compared with every command of this "
-               "period",
+               "period before each comparison; the measured pressure is compared with the lowest and the "
+               "highest command of this period",
                "none"),
       {{"overrun_cycles", "0 to 100000", "",
         "number of consecutive missed cycles of the control loop after which F901 occurs; 0: missed cycles "
@@ -218,7 +219,8 @@ void declare_monitoring(RigKeys& keys) {
       required("max_speed_mm_per_s", &Check::max_speed_mm_per_s, {0.001, 1e6},
                "largest plausible speed of a finger; a faster change of the reading is a jump"),
       required("jump_margin_mm", &Check::jump_margin_mm, {0, 1000},
-               "largest change of a reading that noise can cause; such a change is never a jump"),
+               "largest change of a reading that noise can cause; it is added to the change that "
+               "`max_speed_mm_per_s` permits"),
       required("frozen_after_s", &Check::frozen_after_s, {0.001, 3600},
                "time after which a constant reading is frozen if the command has changed"),
       required("frozen_band_mm", &Check::frozen_band_mm, {0, 1000},
@@ -226,10 +228,11 @@ void declare_monitoring(RigKeys& keys) {
       required("frozen_command_kpa", &Check::frozen_command_kpa, {0.001, 10'000},
                "smallest change of the commanded pressure at which a constant reading is regarded as frozen"),
       optional("jump_mm", &Check::jump_mm, {0.001, 1000},
-               "smallest jump of a reading; the size of a jump is the change of the reading minus the change "
-               "of the model output"),
+               "size above which the unexplained part of a change between two readings counts as a jump; "
+               "motions of up to 1.5 times the motion of the model are explained"),
       optional("unsteady_jumps", &Check::unsteady_jumps, {2, control::most_unsteady_jumps},
-               "number of jumps back and forth within 1 s at which the sensor is regarded as unsteady")};
+               "number of jumps within 1 s, each opposite to the previous jump, at which the sensor is "
+               "regarded as unsteady")};
   using Health = control::ModelHealthSettings;
   keys.model_health = {
       required("model_error_mm", &Health::model_error_mm, {1e-6, 1000},

@@ -113,7 +113,7 @@ void declare_converters(RigKeys& keys) {
   keys.converters = {required("output_bits", &SimulatedChannel::output_bits, {0, 24},
                               "resolution of the simulated outputs in bits; 0: no quantisation"),
                      required("input_bits", &SimulatedChannel::input_bits, {0, 24},
-                              "resolution of the simulated inputs in bits; 0: no quantisation"),
+                              "resolution of the simulated displacement inputs in bits; 0: no quantisation"),
                      {"plants", "map", "",
                       "map of the simulated fingers: each key is the name of a channel, and its value "
                       "describes the finger of this channel"},

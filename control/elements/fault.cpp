@@ -63,13 +63,13 @@ constexpr std::array faults{
               "The measured pressure does not follow the command.",
               "burst or kinked air line, leak, no supply pressure, a valve without power",
               "Find the leak; check supply, valve and pressure sensor.",
-              "pressure_cycles cycles in which the measured pressure differs from all commands of the last "
-              "pressure_delay_s by more than pressure_tolerance_kpa"},
+              "pressure_cycles cycles in which the measured pressure is outside the range of the commands of "
+              "the last pressure_delay_s by more than pressure_tolerance_kpa"},
     FaultInfo{FaultCode::readback_mismatch, "F301", "readback_mismatch",
               "The board's output differs from the written value.",
               "another Modbus client, a board in manual mode, a wrong scaling of the output",
               "Read the output register with another Modbus client.",
-              "readback_cycles cycles in which the output differs from all commands of the last "
+              "readback_cycles cycles in which the output is outside the range of the commands of the last "
               "readback_delay_s by more than readback_tolerance_kpa"},
     FaultInfo{FaultCode::write_refused, "F302", "write_refused", "The board rejected the write.",
               "an output in locked or manual mode, a latched watchdog trip of the board",

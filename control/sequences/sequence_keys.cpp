@@ -33,7 +33,8 @@ void declare_file(SequenceKeys& keys) {
       optional("about", &Sequence::about, {}, "one line of description"),
       {"channels", "list of names", "all fingers of the rig", "names of the fingers that take part"},
       optional("interlock", &Sequence::interlock, interlock_names,
-               "`start`: an open interlock refuses the start. `always`: it also stops the running sequence"),
+               "`start`: while the interlock is open, a start is refused. `always`: an open interlock also "
+               "stops the running sequence"),
       {"parameters", "map", "none", "at most 16 [parameters](#parameters), which a start request may set"},
       {"steps", "list", "", "1 to 200 [steps](#kinds-of-steps)"}};
   keys.parameter = {
