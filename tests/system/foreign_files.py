@@ -872,7 +872,7 @@ def outcome(file, folder):
         return why or f"off by {worst:.2g}", "values", remarks
     if file.says and file.says not in remarks:
         return f"does not say '{file.says}': {remarks}", "values", remarks
-    return "", f"{told['samples']} samples, all correct", remarks
+    return "", f"{told['samples']} samples, with the values of the file", remarks
 
 
 HEAD = """# External files
@@ -884,7 +884,7 @@ $ tests/system/foreign_files.py --page
 ```
 
 The script writes every file of the table, imports the file, and compares each imported value with the written value. The
-result "all correct" means that each imported value deviates from its written value by at most 1e-9 of the largest value
+result "with the values of the file" means that each imported value deviates from the written value by at most 1e-9 of the largest value
 in the column. The result "refused" means that the import states the reason and writes no output. If the column "options"
 of the table is empty, the import used the columns that `import --yes` proposes from names and units. The test
 `system.test_import` repeats all imports and compares their results with this page. [How to import](../how-to/import.md)
