@@ -16,8 +16,10 @@ namespace {
 
 const std::string file_name = std::string(SOFTGRIP_SOURCE_DIR) + "/docs/reference/blocks.md";
 
-std::string_view what_it_does(Kind kind) {
-  switch (kind) {
+std::string_view what_it_does(const BlockInfo& info) {
+  // A block whose equation begins in this way has no output of its own.
+  if (info.equation.starts_with("bouc_wen:")) return "The block modifies the block `bouc_wen` of the model.";
+  switch (info.kind) {
     case Kind::pressure:
       return "The block changes the pressure [kPa], in series with the other blocks.";
     case Kind::element:
@@ -74,7 +76,7 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   if (!info.formerly.empty()) out << "Deprecated name: `" << info.formerly << "`.\n\n";
   out << "    " << info.equation << "\n\n";
-  out << what_it_does(info.kind) << " " << how_undone(info.inverse)
+  out << what_it_does(info) << " " << how_undone(info.inverse)
       << (info.repeatable ? " A model may contain the block more than once." : "") << "\n\n";
   out << "| key | unit | typical | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
