@@ -82,7 +82,8 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
   for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);
   if (descriptor.max_parts > 0) {
-    out << "\n`#` is a number from 1 to at most " << descriptor.max_parts << ".\n";
+    out << "\nReplace `#` by consecutive numbers from 1. The largest number is at most "
+        << descriptor.max_parts << ".\n";
   }
 }
 
