@@ -20,8 +20,8 @@ class Stiffening {
                  "z = y / (1 + s |y|), for negative s: y (1 - s |y|)");
   static constexpr std::array parameters{
       parameter("stiffening_per_mm", "1/mm",
-                "relative decrease of the secant gain per mm of displacement; the relative decrease of the "
-                "tangent gain is twice as large",
+                "relative decrease of the secant gain per mm of displacement, at small displacements; the "
+                "decrease of the tangent gain is twice as large",
                 Typical{0.01}, Within{-1.0, 1.0}, Scale{0.005}, Neutral{0.0})};
 
   Stiffening(std::span<const T> values, const Preparation&) : stiffening_per_mm_(values[0]) {}
