@@ -142,9 +142,12 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
     EffectFit first = fit.at(within(effect, start));
-    // If the effect has no influence on the prediction at the first start point, the other start points give
-    // the same result.
-    if (!effect.free_form && looks.empty() && first.white == without) return first;
+    // An effect has no influence below some size, for example a dead time below the sampling interval. If a
+    // start point has no influence, the fit cannot continue from it.
+    if (!effect.free_form && first.white == without) {
+      if (&start == &effect.starts.back() && looks.empty()) return first;
+      continue;
+    }
     looks.push_back(dense ? std::move(first) : fit.sized(std::move(first), without));
   }
   std::sort(looks.begin(), looks.end(),

@@ -18,7 +18,7 @@ struct ClockOffset : FormOf<model::ClockOffset> {
       {},
       {SizedBy::Of::number, "the reading is ahead by", "s", "lead_s"}};
 
-  static Starts starts(const Scales&) { return every({{"lead_s", {0.01, 0.03, 0.1, 0.3}}}); }
+  static Starts starts(const Scales& s) { return every({{"lead_s", s.times_s({0.01, 0.03, 0.1, 0.3})}}); }
 };
 
 }  // namespace softgrip::sysid::causes

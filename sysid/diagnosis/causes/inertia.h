@@ -13,8 +13,8 @@ struct Inertia : FormOf<model::Inertia> {
       {"Tap the finger and check whether its mounting or an added mass oscillates.",
        "Tighten the mounting, remove added masses, and record a sharp step."}};
 
-  static Starts starts(const Scales&) {
-    return every({{"period_s", {0.05, 0.15, 0.4, 1.0}}, {"damping_ratio", {0.15, 0.5}}});
+  static Starts starts(const Scales& s) {
+    return every({{"period_s", s.times_s({0.05, 0.15, 0.4, 1.0})}, {"damping_ratio", {0.15, 0.5}}});
   }
   static Bounds bounds(const Scales& s, const model::Model&) {
     // A period below two sampling intervals cannot be resolved. With a damping ratio of 1/sqrt(2) or more,

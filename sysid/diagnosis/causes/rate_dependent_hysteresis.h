@@ -25,7 +25,7 @@ struct RateDependentHysteresis {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {0.05 * gain, -0.05 * gain}},
                     {"width_kpa", {0.1 * s.largest_kpa, 0.5 * s.largest_kpa}},
-                    {"time_constant_s", {0.3, 3.0}}});
+                    {"time_constant_s", s.times_s({0.3, 3.0})}});
     }
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {// If the width is larger than half of the pressure range, the element does not saturate and
@@ -44,18 +44,20 @@ struct RateDependentHysteresis {
     using Form = FormOf<Block>;
     static typename Form::Starts sized(typename Form::Parameter size, const std::vector<double>& sizes,
                                        const Scales& s) {
-      // At these three rates, the pressure rises from 0 to its largest value in 5 s, in 1 s and in 0.2 s.
-      return Form::every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
-                          {"settling_s", {0.03, 0.2}},
+      // At these three rates, the pressure of a finger rises from 0 to its largest value in 5 s, in 1 s and
+      // in 0.2 s.
+      const double rate = s.largest_kpa / s.time_unit_s;
+      return Form::every({{"rate_kpa_per_s", {0.2 * rate, rate, 5 * rate}},
+                          {"settling_s", s.times_s({0.03, 0.2})},
                           {size, sizes}});
     }
     static typename Form::Bounds bounds(const Scales& s, const model::Model&) {
       return {// A change of the loop width that is equal at all rates in the data is not a dependence on the
               // rate.
-              {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
+              {"rate_kpa_per_s", 0.05 * s.largest_kpa / s.time_unit_s, 20 * s.largest_kpa / s.time_unit_s},
               // With a longer averaging time, the block would describe the history of the pressure and not
               // its rate.
-              {"settling_s", 0.5 * s.sample_s, 0.5}};
+              {"settling_s", 0.5 * s.sample_s, 0.5 * s.time_unit_s}};
     }
   };
   /// Form of the cause: the width of the hysteresis increases with the rate of the pressure.

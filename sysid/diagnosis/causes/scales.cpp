@@ -14,6 +14,7 @@ Scales scales_of(const std::vector<Record>& records) {
   };
   Scales s;
   s.sample_s = std::numeric_limits<double>::infinity();
+  if (!records.empty()) s.time_unit_s = time_unit_s(records);
   for (const Record& record : records) {
     s.span_mm = std::max(s.span_mm, record.span_mm);
     s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);

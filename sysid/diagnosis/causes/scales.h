@@ -27,6 +27,7 @@ struct Scales {
   double campaign_s = 0;          ///< total duration of all records
   double sample_s = 0;            ///< typical interval between two distinct readings, in the record where
                                   ///< this interval is smallest
+  double time_unit_s = 1;         ///< result of time_unit_s() for the records: 1 s for a finger
   double largest_supply_kpa = 0;  ///< largest supply pressure; 0: the logs have no such column
   bool has_temperature = false;   ///< true: the logs have a temperature column whose values vary
   bool has_supply = false;        ///< true: the logs have a supply column whose values vary
@@ -39,6 +40,11 @@ struct Scales {
   /// Faster changes are attributed to the initial state of a log or to creep.
   [[nodiscard]] double soonest_s() const {
     return std::max(0.02 * campaign_s, std::min(10.0, 0.4 * campaign_s));
+  }
+  /// Returns times [s] that are stated in multiples of time_unit_s.
+  [[nodiscard]] std::vector<double> times_s(std::vector<double> multiples) const {
+    for (double& each : multiples) each *= time_unit_s;
+    return multiples;
   }
   /// Returns the gain of the finger [mm/kPa]: the span of the readings divided by the largest pressure.
   [[nodiscard]] double gain_mm_per_kpa() const { return largest_kpa > 0 ? span_mm / largest_kpa : 1; }

@@ -19,7 +19,9 @@ struct TransportDelay : FormOf<model::TransportDelay> {
        "the valve."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "increase of the dead time", "s", "delay_s"}};
-  static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }
+  static Starts starts(const Scales& s) {
+    return every({{"delay_s", s.times_s({0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0})}});
+  }
 };
 
 }  // namespace softgrip::sysid::causes

@@ -17,7 +17,9 @@ struct ValveLag : FormOf<model::ValveLag> {
        "slow, the valve is the cause."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "increase of the lag of the valve", "s", "time_constant_s"}};
-  static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
+  static Starts starts(const Scales& s) {
+    return every({{"time_constant_s", s.times_s({0.02, 0.1, 0.3, 0.6})}});
+  }
 };
 
 }  // namespace softgrip::sysid::causes

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
@@ -42,6 +43,19 @@ TEST(CauseList, RegisteredCausesAreFoundById) {
   EXPECT_EQ(all_causes().size(), size_of(causes::All{}));
   for (const Cause& cause : all_causes()) EXPECT_EQ(find_cause(cause.id)->id, cause.id);
   EXPECT_FALSE(find_cause("no_such_cause").has_value());
+}
+
+TEST(CauseStarts, OfASlowProcessAreProportionalToItsTimeUnit) {
+  Scales finger = typical_scales(), process = finger;
+  ASSERT_EQ(finger.time_unit_s, 1);
+  process.time_unit_s = 60;
+  for (const char* id : {"transport_delay", "valve_lag", "sensor_lag", "clock_offset", "inertia"}) {
+    const CauseForm& form = find_cause(id)->forms.front();
+    const std::vector<model::BlockSpec> quick = form.starts(finger), slow = form.starts(process);
+    ASSERT_EQ(quick.size(), slow.size()) << id;
+    for (std::size_t i = 0; i < quick.size(); ++i)
+      EXPECT_DOUBLE_EQ(slow[i].values.front(), 60 * quick[i].values.front()) << id;
+  }
 }
 
 class Causes : public ::testing::TestWithParam<Cause> {
