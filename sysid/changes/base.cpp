@@ -10,6 +10,7 @@
 #include "sysid/changes/base_prediction.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/regulator_fit.h"
+#include "sysid/evidence/tolerance.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"
@@ -199,9 +200,11 @@ void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Rec
   if (models.empty()) return;
   static_cast<HealthyModel&>(base) = std::move(models[best]);
   models.erase(models.begin() + static_cast<std::ptrdiff_t>(best));
-  std::erase_if(models, [&](const HealthyModel& each) {
-    return each.left_mm > limits::comparable_ratio * base.left_mm;
-  });
+  // A further healthy run could have the error of the other model. The error between the halves of a single
+  // run does not show this, because both halves have similar inputs.
+  const double most =
+      base.units.are_runs() ? std::sqrt(run_to_run_factor(base.units.runs())) : limits::comparable_ratio;
+  std::erase_if(models, [&](const HealthyModel& each) { return each.left_mm > most * base.left_mm; });
   base.alternatives = std::move(models);
 }
 

@@ -71,8 +71,9 @@ struct Base : HealthyModel {
   double bin_s = 0.05;
   Whitener whitener;
   std::vector<Record> records;  ///< thinned healthy records
-  /// Other models that predict the left-out units about equally well. Where their predictions differ from
-  /// those of the selected model, the healthy logs do not determine the response of the finger.
+  /// Other models whose error on the left-out units could be that of a further healthy run. Where their
+  /// predictions differ from those of the selected model, the healthy logs do not determine the response of
+  /// the finger.
   std::vector<HealthyModel> alternatives;
 };
 

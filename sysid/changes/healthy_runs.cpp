@@ -1,9 +1,13 @@
 #include "sysid/changes/healthy_runs.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/statistics.h"
+#include "sysid/evidence/f_quantile.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 
@@ -33,16 +37,32 @@ Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs
   return {gains, runs, more};
 }
 
-RunSpread::RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs, const Disagreement& more)
-    : factor_(run_to_run_factor(runs)), more_(more), are_runs_(runs > 1) {
-  for (const HealthyFits& unit : healthy) {
-    const double rms = unit.readings.plain_rms({});
-    mean_square_ += square(rms) / static_cast<double>(healthy.size());
-    worst_rms_ = std::max(worst_rms_, rms);
-    worst_loss_ = std::max(worst_loss_, per_bin(unit.readings, unit.readings.white({})));
+double prediction_bound(const std::vector<double>& errors) {
+  const auto n = static_cast<double>(errors.size());
+  PairSums logarithms;
+  for (const double error : errors) {
+    const double logarithm = std::log(std::max(error, std::numeric_limits<double>::min()));
+    logarithms.add(logarithm, logarithm);
   }
-  worst_rms_ = std::sqrt(square(worst_rms_) + more.mean_square);
-  worst_loss_ += more.loss;
+  const double deviation = std::sqrt(std::max(0.0, logarithms.variance_x()) / (n * (n - 1)));
+  const double quantile = std::sqrt(f_quantile(limits::probability, 1, n - 1));  // of Student's t, two-sided
+  return std::exp(logarithms.x / n + quantile * deviation * std::sqrt(1 + 1 / n));
+}
+
+RunSpread::RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs, const Disagreement& more)
+    : factor_(run_to_run_factor(runs)), more_(more) {
+  std::vector<double> rms, losses;
+  for (const HealthyFits& unit : healthy) {
+    rms.push_back(unit.readings.plain_rms({}));
+    losses.push_back(per_bin(unit.readings, unit.readings.white({})));
+    mean_square_ += square(rms.back()) / static_cast<double>(healthy.size());
+  }
+  if (runs < 2 || healthy.size() < 2) return;
+  const auto with_more = [&](double value) { return std::sqrt(square(value) + more.mean_square); };
+  rms_bound_ = with_more(prediction_bound(rms));
+  worst_rms_ = with_more(*std::max_element(rms.begin(), rms.end()));
+  loss_bound_ = prediction_bound(losses) + more.loss;
+  worst_loss_ = *std::max_element(losses.begin(), losses.end()) + more.loss;
 }
 
 }  // namespace softgrip::sysid

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -37,6 +38,11 @@ struct Disagreement {
 [[nodiscard]] Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs,
                                      double more = 0);
 
+/// Returns the upper end of the 95 % prediction interval for the error of a further healthy run. The
+/// logarithms of the errors are assumed to have a normal distribution (Student's t).
+/// @param errors  error in each healthy run, > 0; at least two.
+[[nodiscard]] double prediction_bound(const std::vector<double>& errors);
+
 /// Errors of the healthy runs, and the error that is permitted in a further healthy run. The model that
 /// predicts a healthy run was fitted to all other healthy runs.
 class RunSpread {
@@ -58,16 +64,18 @@ class RunSpread {
     return rms > allowed_rms() || loss > factor_ * (1 + more_.loss);
   }
   /// Returns true if the error is large enough for a search for a change. If there are several healthy runs,
-  /// the tolerance of the search prevents false causes. It is then sufficient that the error exceeds the
-  /// error of each healthy run.
+  /// the tolerance of the search prevents false causes. It is then sufficient that one of the two errors
+  /// exceeds its prediction bound, or that both errors exceed those of every healthy run.
   [[nodiscard]] bool admits_a_change(double rms, double loss) const {
-    return is_exceeded(rms, loss) || (are_runs_ && (rms > worst_rms_ || loss > worst_loss_));
+    return is_exceeded(rms, loss) || rms > rms_bound_ || loss > loss_bound_ ||
+           (rms > worst_rms_ && loss > worst_loss_);
   }
 
  private:
-  double factor_ = 1, mean_square_ = 0, worst_rms_ = 0, worst_loss_ = 0;
+  double factor_ = 1, mean_square_ = 0;
+  double rms_bound_ = std::numeric_limits<double>::infinity(), loss_bound_ = rms_bound_;
+  double worst_rms_ = rms_bound_, worst_loss_ = rms_bound_;
   Disagreement more_;
-  bool are_runs_ = false;
 };
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,6 @@
 #pragma once
 // Measures how much less the healthy logs determine the response to the input of the later logs. Models that
-// predict the healthy runs about equally well can give different predictions for an input unlike the healthy
+// predict the healthy runs within their spread can give different predictions for an input unlike the healthy
 // ones. The predictions depend on the input and on the estimated state at the start of a log, and not on
 // later readings.
 

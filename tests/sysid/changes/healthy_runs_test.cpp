@@ -1,5 +1,7 @@
 #include "sysid/changes/healthy_runs.h"
 
+#include <algorithm>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,6 +38,49 @@ TEST_F(HealthyRuns, DelayExceedsTheSpreadOfHealthyRuns) {
   const RunSpread spread(units(), base_.units.runs());
   const LaterReadings later = readings({.delay_s = 0.06});
   EXPECT_TRUE(spread.is_exceeded(later.plain_rms({}), per_bin(later, later.white({}))));
+}
+
+TEST_F(HealthyRuns, AdmitAChangeIfOneErrorExceedsItsBoundOrBothTheHealthyErrors) {
+  const std::vector<HealthyFits> healthy = units();
+  ASSERT_GE(base_.units.runs(), 2U);
+  const RunSpread spread(healthy, base_.units.runs());
+  std::vector<double> rms, losses;
+  for (const HealthyFits& unit : healthy) {
+    rms.push_back(unit.readings.plain_rms({}));
+    losses.push_back(per_bin(unit.readings, unit.readings.white({})));
+  }
+  const double worst_rms = *std::max_element(rms.begin(), rms.end());
+  const double worst_loss = *std::max_element(losses.begin(), losses.end());
+  const double rms_bound = prediction_bound(rms), loss_bound = prediction_bound(losses);
+  ASSERT_FALSE(spread.is_exceeded(1.01 * rms_bound, 1.01 * loss_bound));
+  ASSERT_GT(rms_bound, 1.01 * worst_rms);
+  ASSERT_GT(loss_bound, 1.01 * worst_loss);
+  EXPECT_TRUE(spread.admits_a_change(1.01 * rms_bound, worst_loss));
+  EXPECT_TRUE(spread.admits_a_change(worst_rms, 1.01 * loss_bound));
+  EXPECT_FALSE(spread.admits_a_change(0.99 * rms_bound, worst_loss)) << "only one error is large";
+  EXPECT_FALSE(spread.admits_a_change(worst_rms, 0.99 * loss_bound)) << "only one error is large";
+  EXPECT_TRUE(spread.admits_a_change(1.01 * worst_rms, 1.01 * worst_loss)) << "both errors are large";
+  const RunSpread one_run(healthy, 1);
+  EXPECT_FALSE(one_run.admits_a_change(1.01 * rms_bound, 1.01 * loss_bound)) << "the halves of one run";
+}
+
+TEST(PredictionBound, IsExceededByTwoAndAHalfPercentOfSimilarRuns) {
+  std::mt19937 random(2);
+  std::lognormal_distribution<double> error(-1, 0.3);
+  for (const std::size_t runs : {3U, 6U}) {
+    int exceeded = 0;
+    constexpr int sets = 8000;
+    for (int i = 0; i < sets; ++i) {
+      std::vector<double> errors(runs);
+      std::generate(errors.begin(), errors.end(), [&] { return error(random); });
+      exceeded += error(random) > prediction_bound(errors) ? 1 : 0;
+    }
+    EXPECT_NEAR(exceeded / static_cast<double>(sets), 0.025, 0.006) << runs << " runs, seed 2";
+  }
+}
+
+TEST(PredictionBound, OfEqualErrorsIsTheirValue) {
+  EXPECT_NEAR(prediction_bound({0.2, 0.2, 0.2}), 0.2, 1e-9);
 }
 
 }  // namespace
