@@ -27,9 +27,12 @@ void declare_rig(RigKeys& keys) {
       {"faults", "map", "", "[times after which an error becomes a fault](#faults)"},
       {"board", "map", "",
        "settings of the board: a map with one of the keys `modbus_tcp`, `modbus_rtu`, `iio` and `simulated`"},
-      {"plausibility", "map", "none", "[limits of a valid reading](#plausibility), for all channels"},
+      {"plausibility", "map", "none",
+       "[limits of a valid reading](#plausibility) for all channels without their own `plausibility`; "
+       "required if a channel has none"},
       {"model_health", "map", "none",
-       "[expected model residual of a healthy finger](#model_health), for all channels"},
+       "[expected model residual of a healthy finger](#model_health) for all channels without their own "
+       "`model_health`; required if a channel has none"},
       {"channel_defaults", "map", "none", "[keys that apply to all channels](#channel_defaults)"},
       {"channels", "list", "", "1 to 16 [channels](#a-channel)"},
       {"safety", "map", "", "[actions after a stop or a fault](#safety)"},

@@ -126,7 +126,7 @@ def page(rows, command, planned, variation, version):
     if len({row["baseline runs"] for row in rows}) > 1:
         lines += ["", "## By baseline runs", "", *smallest_found(changed), "", *table(changed, ("baseline runs", "strength"), OUTCOMES), "",
                   *table(still, ("baseline runs",), ("unchanged", "false_alarm", "unexplained"))]
-    lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
+    lines += ["", "## By family and recorded signals (`command`: no measured pressure; `pressure`: measured pressure)", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
               *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
               "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## Cases without the true cause named first", "",
               "| hidden cause | strength | family | columns | seed | outcome | verdict | named causes |", "|---|---|---|---|---|---|---|---|"]

@@ -130,7 +130,8 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
   page.paragraph(
       "The published Bouc-Wen element with a varied beta is driven by a sine of 0 to 60 kPa. Each inverse "
       "computes the pressure from the resulting displacement. The explicit form p(k) = (y(k) + "
-      "h(k-1))/alpha is a fixed-point iteration whose loop gain is beta/alpha.");
+      "h(k-1))/alpha is a fixed-point iteration whose loop gain is beta/alpha. The displacement is y = alpha "
+      "p - h, where h is its hysteretic part.");
   page.table(result::table_of("", study.inverses));
   std::vector<Chart> charts;
   for (const InverseTrial& row : study.inverses) {

@@ -72,7 +72,8 @@ void declare_motion(SequenceKeys& keys) {
 }
 
 void declare_steps(SequenceKeys& keys) {
-  const auto timeout = required("timeout_s", &Step::timeout_s, short_s, "time limit for passing the step");
+  const auto timeout =
+      required("timeout_s", &Step::timeout_s, short_s, "time within which the step must succeed");
   const auto retries =
       optional("retries", &Step::retries, {0, 10}, "largest number of repetitions of a failed step");
   const auto on_fail = required("on_fail", &Step::on_fail, on_fail_names,

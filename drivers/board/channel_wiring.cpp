@@ -86,8 +86,9 @@ class Checker {
       problems_.push_back(where + kind + " " + std::to_string(index) + " is wired twice");
     }
     if (wired != terminals[index].unit) {
-      problems_.push_back(where + "wired in " + std::string(name_of(wired)) + ", but " + name +
-                          " has this terminal in " + std::string(name_of(terminals[index].unit)));
+      problems_.push_back(where + "the wiring states " + std::string(name_of(wired)) +
+                          ", but the unit of this terminal of " + name + " is " +
+                          std::string(name_of(terminals[index].unit)));
     }
   }
 

@@ -12,11 +12,11 @@ namespace softgrip::model {
 template <class T>
 class Characteristic {
  public:
-  static constexpr BlockInfo info =
-      block_info("characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
-                 "The displacement is a nonlinear function of the summed displacement of all blocks that "
-                 "compute a displacement. Loading and unloading have the same nonlinear function.",
-                 "z = span (exp(a y/span) - 1) / (exp(a) - 1) from 0 to span, straight beyond");
+  static constexpr BlockInfo info = block_info(
+      "characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
+      "The displacement is a nonlinear function of the summed displacement of all blocks that "
+      "compute a displacement. Loading and unloading have the same nonlinear function.",
+      "z = span (exp(a y/span) - 1) / (exp(a) - 1) for y from 0 to span; straight lines outside this range");
   static constexpr std::array parameters{
       parameter("curvature", "", "parameter a; if a is above 0, the finger is softer at larger displacements",
                 Typical{0.5}, Within{-4.0, 4.0}, Scale{0.2}, Neutral{0.0}),

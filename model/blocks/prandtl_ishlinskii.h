@@ -26,7 +26,8 @@ class PrandtlIshlinskii {
       "prandtl_ishlinskii", Station::actuator, Kind::element, Inverse::implicit,
       "Prandtl-Ishlinskii hysteresis", "Rate-independent hysteresis as a sum of play operators.",
       "y += w1 o1 + w2 o2 + ..., |b(p) - o| <= r in every operator; o moves only to keep this condition; "
-      "b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p / envelope_kpa, straight beyond");
+      "b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p / envelope_kpa for p from 0 to envelope_kpa; "
+      "straight lines outside this range");
   static constexpr std::array parameters{
       parameter("trained_kpa", "kPa",
                 "largest pressure before the start of the log; 0 if the finger was never loaded",

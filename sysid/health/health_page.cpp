@@ -204,7 +204,7 @@ void add_numbers(sysid::Page& page, const FingerHealth& health) {
   const auto of_number = [&](std::size_t number) { return number_fields(health, number); };
   if (!health.alarms.empty())
     page.table(result::table_of("All alarms, including those closed by a repair", health.alarms, of_alarm));
-  page.table(result::table_of("Latest value and reference since the last maintenance",
+  page.table(result::table_of("Latest value, and reference value from the points since the last maintenance",
                               std::views::iota(std::size_t{0}, sysid::health_numbers), of_number));
 }
 

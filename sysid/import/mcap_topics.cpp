@@ -91,7 +91,7 @@ std::optional<MergeProblem> check_clocks(const McapMessages& messages, const Tab
       "the times '" + document::shown(time.name, 40) + "' of the topics " + topic(least) + " and " +
           topic(most) + " come from two clocks. Relative to log_time, these times differ by " +
           significant(*most - *least) + " s",
-      "record the times of only one clock. If the messages contain no times, log_time is used"};
+      "record the times of only one clock, or record no times in the messages (log_time is then used)"};
 }
 
 /// Sorts the rows by time. If the times decrease within one topic, the rows keep their order, and

@@ -34,7 +34,7 @@ std::optional<ExitCode> refuse_folder(const std::string& path, const std::string
   std::error_code error;
   const bool is_there = !usual.empty() && std::filesystem::exists(inside, error);
   return fail(ExitCode::io, "cannot read " + path + ": it is a folder, and this option requires a file" +
-                                (is_there ? ". Name " + inside : ""));
+                                (is_there ? ". Give the file " + inside + " instead" : ""));
 }
 
 tl::expected<model::Model, ExitCode> read_model(const std::string& path) {

@@ -160,7 +160,7 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
   const auto reference = ask_number(
       session, person,
       settings.may_move
-          ? fmt::format("gauge at the {} position, mm", place)
+          ? fmt::format("gauge reading at the {} position, mm", place)
           : fmt::format("put the target of the sensor at the {} position, and enter the gauge reading, mm",
                         place));
   if (!reference) return tl::unexpected(reference.error());
@@ -202,8 +202,9 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
   }
   double reference = 0;
   if (!by_monitor) {
-    const auto shown = ask_number(
-        session, person, fmt::format("manometer at the {} pressure, kPa", upper ? "second" : "first"));
+    const auto shown =
+        ask_number(session, person,
+                   fmt::format("manometer reading at the {} pressure, kPa", upper ? "second" : "first"));
     if (!shown) return tl::unexpected(shown.error());
     reference = *shown;
   }

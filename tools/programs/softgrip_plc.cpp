@@ -16,9 +16,10 @@ namespace softgrip::plc {
 namespace {
 
 void add_options(CLI::App& program, tools::GatewayOptions& options) {
-  tools::add_gateway_options(program, options, "plc.yaml",
-                             "Configuration file: addresses, access and the register map",
-                             "Socket of the daemon; overrides the configuration file");
+  tools::add_gateway_options(
+      program, options, "plc.yaml",
+      "Configuration file: addresses, access, recipes, reaction to a stopped heartbeat, register map",
+      "Socket of the daemon; overrides the configuration file");
   program.footer("The server is ready when it has printed 'listening on ADDRESS:PORT'.");
 }
 

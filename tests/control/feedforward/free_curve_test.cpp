@@ -120,7 +120,7 @@ TEST(FreeMotion, AModelWithoutAValveMovesFasterToTheSameEnd) {
   const FreeMotion bare = free_motion(body, rig_limits);
   const FreeMotion valved = free_motion(twin(), rig_limits);
   EXPECT_NEAR(bare.highest_mm, valved.highest_mm, 0.01 * valved.highest_mm)
-      << "the lag of the valve does not change the displacement at rest";
+      << "the lag of the valve does not change the settled displacement at the highest pressure";
   EXPECT_GT(bare.fastest_mm_per_s, 1.5 * valved.fastest_mm_per_s)
       << "the finger is faster without the lag of the valve";
   model::Chain<double> resting(body);

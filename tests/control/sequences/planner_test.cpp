@@ -200,7 +200,7 @@ TEST(Planner, ChoosesASmoothCommandIfTheFingerDoesNotMove) {
   Planner planner(dead, limits, tick_s);
   planner.drive([](double) { return 10.0; }, 1);
   const PressurePlan plan = planner.plan(reference, 0, 4);
-  ASSERT_NEAR(plan.rmse_mm, 1, 1e-9) << "the finger does not move";
+  ASSERT_NEAR(plan.rmse_mm, 1, 1e-9) << "the finger must not move, so the error must be 1 mm";
   std::vector<double> at_once(plan.pressure_kpa.size(), settled_line(dead, limits).pressure_kpa(1));
   at_once.front() = plan.pressure_kpa.front();
   EXPECT_LT(bend_of(plan.pressure_kpa), 0.9 * bend_of(at_once));

@@ -125,7 +125,7 @@ class SupervisorSearch : public testing::Test {
     if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
       return "a vent request is refused";
     if (outputs.release && after == State::running && supervisor.sequence() == nullptr)
-      return "the release state occurs without a sequence";
+      return "the supervisor requests the release step although no sequence runs";
     if (tick.request == Kind::release && before == State::resynchronising && may_rise(after))
       return "motion continues after a release";
     if (after == State::resynchronising && before != after && !started)

@@ -28,7 +28,7 @@ TEST(ChannelWiring, EachMistakeCausesOneProblemThatNamesTheChannel) {
       {[](auto& w) { w[1].valve.output = 0; }, "output 0 is wired twice"},
       {[](auto& w) { w[1].displacement.input = 6; }, "no input 6"},
       {[](auto& w) { w[1].pressure->input = 4; }, "input 4 is wired twice"},
-      {[](auto& w) { w[1].displacement.unit = ElectricalUnit::milliampere; }, "wired in mA"},
+      {[](auto& w) { w[1].displacement.unit = ElectricalUnit::milliampere; }, "the wiring states mA"},
       {[](auto& w) { w[1].valve.scaling.x1 = 0; }, "scaling points"},
       {[](auto& w) { w[1].displacement.scaling.y1 = -5; }, "scaling points"},
       {[](auto& w) { w[1].displacement.valid_max = 0.1; }, "below the highest valid signal"},

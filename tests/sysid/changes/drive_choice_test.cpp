@@ -57,7 +57,7 @@ TEST(DriveChoice, GainChangeIsFoundWithAnUnusedPressureGauge) {
   ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
   EXPECT_EQ(d->causes[0].id, "ageing");
   EXPECT_NEAR(d->causes[0].size.value, 5, 0.6);
-  EXPECT_EQ(d->readings.size(), 1U) << "the gauge is not evaluated";
+  EXPECT_EQ(d->readings.size(), 1U) << "the measured pressure must not be judged";
   const auto same = diagnose_change(healthy, with_gauge_in_the_pipe(logs_of({}, 5)));
   ASSERT_TRUE(same) << same.error();
   EXPECT_EQ(same->verdict, ChangeVerdict::unchanged) << change_sentence(*same);

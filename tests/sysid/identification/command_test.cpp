@@ -328,9 +328,9 @@ TEST_F(Command, FolderInsteadOfAFileIsRefusedWithTheFileInIt) {
   write_log("tp1.csv", model::SignalName::tp1);
   write("id/model.yaml", model::to_yaml(loaded("zhang2025")));
   EXPECT_EQ(run("validate --model id --data tp1.csv"), 4);
-  EXPECT_EQ(
-      read("err.txt"),
-      "softgrip: cannot read id: it is a folder, and this option requires a file. Name id/model.yaml\n");
+  EXPECT_EQ(read("err.txt"),
+            "softgrip: cannot read id: it is a folder, and this option requires a file. Give the file "
+            "id/model.yaml instead\n");
   for (const std::string command :
        {"validate --model id/model.yaml --data id", "import id --yes --out x.csv", "plot id --out x.svg"}) {
     EXPECT_EQ(run(command), 4) << command;

@@ -267,7 +267,8 @@ TEST(IdentifyStructure, FindsPlayOperatorsWithoutSpuriousBlocks) {
   EXPECT_FALSE(model::position_of<model::RateLimit>(found->model))
       << "the simulated finger has no rate limit";
   EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the simulated finger has no resonance";
-  EXPECT_FALSE(model::position_of<model::LinearModes>(found->model)) << "play operators describe this finger";
+  EXPECT_FALSE(model::position_of<model::LinearModes>(found->model))
+      << "play operators already describe this finger, so linear modes must not be chosen";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
     if (without.without != "hysteresis" && without.without != "creep") continue;

@@ -33,7 +33,8 @@ TEST(WithoutEffects, ReturnsTheReadingsOfTheFingerWithoutTheCauses) {
     EXPECT_NEAR(left[0].reading_mm[i], wanted[0].reading_mm[i], 1e-5) << i;
     apart_mm = std::max(apart_mm, std::abs(half[0].reading_mm[i] - wanted[0].reading_mm[i]));
   }
-  EXPECT_GT(apart_mm, 0.1) << "the fit must retain the effect of the backlash";
+  EXPECT_GT(apart_mm, 0.1)
+      << "the effect of the backlash must remain, because only the softening was removed";
 }
 
 }  // namespace
