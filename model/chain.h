@@ -19,17 +19,19 @@
 namespace softgrip::model {
 
 /// A chain of blocks over the number type T. The constructor allocates memory; reset(), step() and peek() do
-/// not. There are two exceptions: a chain with sample_time_s = 0 (for irregular logs), and a chain whose
-/// steps are much shorter than sample_time_s. In these chains, the delay line of a transport delay may grow.
+/// not. Exception: step() may allocate memory if sample_time_s is 0 (for irregular logs) or much longer than
+/// the steps, because the delay line of a transport delay may then grow.
 ///
 /// The command is piecewise linear: step(dt, u) moves the command linearly from its last value to `u` over
-/// `dt`. For a board that holds its output, call step(0, u) and then step(dt, u). For piecewise linear
-/// commands, Bouc-Wen (exponent 1), Kelvin-Voigt, delay and lag are exact for any dt. After a lag, Bouc-Wen
-/// receives the exact turning points, and Kelvin-Voigt receives a parabola with the exact mean. The error of
-/// the displacement is below 1e-6 mm if dt is at most the time constant of the lag and the command does not
-/// jump. The error is below 1e-8 mm if dt is at most a tenth of this time constant. After the elements,
-/// inertia and sensor lag receive parabolas, each for a pressure change of at most 5 kPa. The error of
-/// inertia and sensor lag is 1e-4 mm after a step of 44 kPa within a sample.
+/// `dt`. For a board that holds its output, call step(0, u) and then step(dt, u). Accuracy:
+///
+/// - With a piecewise linear input, Bouc-Wen (exponent 1), Kelvin-Voigt, delay and lag are exact for any dt.
+/// - After a lag, Bouc-Wen receives the exact turning points, and Kelvin-Voigt receives a parabola with the
+///   exact mean. If the command does not jump, the error of the displacement is below 1e-6 mm for dt up to
+///   the time constant of the lag, and below 1e-8 mm for dt up to a tenth of this time constant.
+/// - Inertia and sensor lag receive one parabola for each part of a step with a pressure change of at most 5
+///   kPa. Example: for an inertia with a period of 45 ms and a rise of 44 kPa within 10 ms, the error is
+///   about 1e-4 mm.
 template <class T>
 class Chain {
  public:

@@ -104,7 +104,7 @@ class FullModelFeedforward {
   double easy_mm_per_s_;                    ///< speed at which the finger moves while the command changes at
                                             ///< the slew limit
   std::array<double, 2> last_target_mm_{};  ///< target displacements of the last two ticks, newest first
-  double last_displacement_mm_ = 0;         ///< displacement in the plan one tick earlier
+  double last_displacement_mm_ = 0;         ///< displacement of the model at the start of the previous step
   Reference fade_;  ///< fade-out of the difference after enter() or after a jump of the reference, on the
                     ///< clock of the reference
 };

@@ -99,9 +99,10 @@ Worst worst_gain(const model::Model& model, const LimitSettings& limits, double 
   return worst;
 }
 
-/// Returns the sentence in a refusal about a Bouc-Wen element with an inverse response. Returns an empty text
-/// if the model has no such element. `stiff` is the immediate gain of all elements except the Bouc-Wen
-/// element, and `stiff_name` is the name of this gain in the sentence.
+/// Returns the sentence that explains the refusal of a model whose Bouc-Wen element has an inverse response
+/// or no immediate gain (beta >= alpha + stiff). Otherwise returns an empty text. `stiff` is the immediate
+/// gain of all elements except the Bouc-Wen element, and `stiff_name` is the name of this gain in the
+/// sentence.
 std::string wrong_way(const model::Model& model, double stiff, std::string_view stiff_name) {
   const model::Chain<double> chain(model);
   const auto* bouc_wen = chain.find<model::BoucWen<double>>();

@@ -171,8 +171,8 @@ bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool star
   return channel.pressure_cycles >= settings_.pressure_cycles;
 }
 
-/// Returns true if a pressure differs from all commands of the window. The newest command is compared first,
-/// because the pressure usually equals this command.
+/// Returns true if a pressure is outside the range from the lowest to the highest command of the window, by
+/// more than the tolerance. The newest command is compared first, because the pressure usually equals it.
 bool FaultMonitor::off(const Channel& channel, double kpa, std::size_t window,
                        double tolerance_kpa) const noexcept {
   const std::vector<double>& sent = channel.sent_kpa;

@@ -72,7 +72,7 @@ struct ClientRequest {
                            ///< characters
   std::uint64_t api = api_version;  ///< for hello: version of the socket API that the client uses
   std::uint64_t limit = 100;        ///< for events: largest number of events, 1 to 1000
-  bool histograms = false;          ///< for statistics: true: the reply contains the bins of the histograms
+  bool histograms = false;  ///< for statistics; if true, the reply contains the bins of the histograms
 };
 
 /// The reason why a line was refused.

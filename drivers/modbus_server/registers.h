@@ -15,9 +15,9 @@ namespace softgrip::modbus {
 /// Returns the reply that reports the exception `code` for a request with the function code `function`.
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-/// The registers of a server, in two tables: holding registers and input registers. A request for an
-/// undefined address gets an exception and not the value 0, so that a client with a wrong address detects its
-/// error. As in the ADAM-6000, the read functions of both tables can read an address that only one table
+/// The registers of a server (holding and input registers), its coils and its discrete inputs. A request for
+/// an undefined address gets an exception and not the value 0, so that a client with a wrong address detects
+/// its error. As in the ADAM-6000, the read functions of both tables can read an address that only one table
 /// contains.
 class Registers {
  public:

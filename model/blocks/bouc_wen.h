@@ -244,8 +244,8 @@ class BoucWen {
 
   static T not_below(const T& value, double bound) { return value_of(value) < bound ? T(bound) : value; }
 
-  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the hysteretic state h and the direction of the
-  // pressure p, where s = sgn(p' h). For h = 0, s is +1.
+  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the hysteretic state h and the direction
+  // sgn(p') of the pressure change, where s = sgn(p' h). For h = 0, s is +1.
   [[nodiscard]] T rate(double h, double direction) const {
     const std::size_t way = direction > 0.0 ? 1 : 0;
     const bool grows = h * direction >= 0.0;
@@ -315,8 +315,10 @@ class BoucWen {
     return h;
   }
 
-  // Returns the number of sub-steps for a pressure change. In each sub-step, the relative change of the slope
-  // dh/dp, n k |h|^(n-1) dp, is below 1/100, and h changes by at most 1/40 of its saturation value.
+  // Returns the number of sub-steps for a pressure change, at most 100000. In each sub-step, the relative
+  // change n k |h|^(n-1) dp of the slope dh/dp is at most 1/100, where k is the larger of rate() for growing
+  // |h| and the magnitude of rate() for shrinking |h|. If h saturates, h also changes by at most 1/40 of its
+  // saturation value. With 100000 sub-steps, these changes may be larger.
   [[nodiscard]] int steps_for(double change_kpa, double direction) const {
     constexpr int most = 100000;
     const double beta = value_of(this->beta(direction));

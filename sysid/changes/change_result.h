@@ -14,7 +14,8 @@ namespace softgrip::sysid {
 /// table: the errors and changes of the quantity.
 [[nodiscard]] result::Fields fields_of(const JudgedChange& judged);
 
-/// Returns the table of the causes: size, confidence interval and share of the error.
+/// Returns the table of the causes: size, confidence interval, effect at full pressure, share of the error,
+/// and alternatives.
 [[nodiscard]] result::Table cause_table(const ChangeDiagnosis& diagnosis);
 /// Returns the table of all tested causes: error reduction, tolerance, and reason of the rejection.
 [[nodiscard]] result::Table tried_table(const JudgedChange& judged);

@@ -1,5 +1,5 @@
 #pragma once
-// Defines causes as changes of a constant baseline model. Each change has few parameters.
+// Defines causes as changes of the unchanged baseline model. Each change has few parameters.
 
 #include <functional>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// Residual of later records. The prediction is the sum of a constant baseline model and effects.
+// Residual of later records. The prediction is the sum of an unchanged baseline model and effects.
 
 #include <string>
 #include <vector>

@@ -214,8 +214,8 @@ void add_warnings(Identification& result) {
 }  // namespace
 
 MultiStart multistart_of(std::vector<double> rmse_mm) {
-  // A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share
-  // of the smallest RMSE.
+  // A search counts as successful if its RMSE is at most (1 + reached_share) times the smallest RMSE of all
+  // searches, plus 1e-6 mm.
   constexpr double reached_share = 1e-3;
   const double lowest = *std::min_element(rmse_mm.begin(), rmse_mm.end());
   const auto reached = std::count_if(rmse_mm.begin(), rmse_mm.end(), [&](double one_mm) {

@@ -48,8 +48,8 @@ inline constexpr std::size_t fewest_events = 20;
 /// condition of a cause is met. With fewer occurrences, single noisy samples could determine the decision.
 inline constexpr std::size_t fewest_occurrences = 5;
 
-/// Smallest number of values from which a correlation coefficient is estimated. With 15 values, its standard
-/// error is 0.26.
+/// Smallest number of values from which a correlation coefficient is estimated. With 15 values and no
+/// correlation, its standard error is 0.27.
 inline constexpr std::size_t fewest_for_correlation = 15;
 
 // Shares of an error

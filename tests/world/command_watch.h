@@ -59,8 +59,8 @@ class CommandWatch {
     std::uint16_t counter = 0;
     bool arrived = false;
     bool executed = false;
-    /// True in three cases: the daemon has refused the command, a later command has replaced this command, or
-    /// the gateway that executed the command has died.
+    /// True in three cases: the daemon refused the command; the command was executed, and another command has
+    /// arrived since; the command was executed, and the gateway has died since.
     bool over = false;
     bool read_as_refused = false;
   };

@@ -30,8 +30,8 @@ class Host {
   [[nodiscard]] virtual const std::optional<daemon::Outcome>& outcome() const = 0;
   /// Returns true if the board vented while the last daemon run executed its sequence.
   [[nodiscard]] virtual bool vented_in_motion() const = 0;
-  /// Starts a daemon. The caller must be a guest program that runs the daemon itself. No other daemon may be
-  /// running.
+  /// Starts a daemon. Only a guest program that runs the daemon in its own process may call this function. No
+  /// other daemon may be running.
   virtual void boot(Life life) = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Simulates the socket API of the daemon without a socket. The test passes the lines of clients to the API
-// and reads the lines of the daemon.
+// Runs the real socket API of the daemon (daemon::SocketApi) without a socket. The test passes the lines of
+// clients to the API and reads the lines that the daemon sends.
 
 #include <deque>
 #include <functional>

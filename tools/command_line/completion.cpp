@@ -57,7 +57,8 @@ Choice choice_of(const CLI::Option& option) {
 
 Command command_of(const CLI::App& app);
 
-/// Adds the subcommands of a command, with the names, options and arguments of each subcommand.
+/// Adds the names of the subcommands as one argument of the command, and adds the options of the subcommands.
+/// An option whose names the command already has is not added again.
 void add_nested(const CLI::App& app, Command& command) {
   Choice place;
   for (const CLI::App* nested : app.get_subcommands([](const CLI::App*) { return true; })) {

@@ -1,4 +1,5 @@
-// softgrip baseline: records a healthy finger as the reference for later comparisons.
+// softgrip baseline: writes the baseline of a healthy finger, from a new recording or from existing logs, or
+// checks a baseline.
 
 #include <CLI/CLI.hpp>
 #include <cmath>

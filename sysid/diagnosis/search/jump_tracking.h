@@ -18,8 +18,8 @@
 namespace softgrip::sysid {
 
 /// Distances between command and valve position at which a valve starts to move, as shares of the band. Below
-/// breaks_loose_from, the valve stays at rest. At breaks_loose_by or above, it always jumps. After a jump,
-/// the valve position equals the command.
+/// breaks_loose_from, the valve stays at rest. Above breaks_loose_by, it always jumps. A jump sets the
+/// valve position to the command at the time of the jump.
 inline constexpr double breaks_loose_from = 0.7;
 inline constexpr double breaks_loose_by = 1.4;
 

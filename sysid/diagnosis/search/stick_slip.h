@@ -22,7 +22,7 @@ namespace softgrip::sysid {
 struct StickSlip {
   double band_kpa = 0;
   Interval band_ci95;
-  std::size_t jumps = 0;        ///< number of jumps for which the readings resolve the distance
+  std::size_t jumps = 0;        ///< number of jumps whose jump distance the readings resolve
   double scatter = 0;           ///< standard deviation of the jump distances, divided by their mean
   std::vector<Record> records;  ///< records with the valve position as drive
   StructureFit fit;             ///< model behind the valve, fitted to `records`

@@ -1,8 +1,7 @@
 #pragma once
 // Searches for a richer base structure (sysid/structure) if no cause explains the data on the given base
-// structure. Names the components of the richer base structure that reduce the held-out error.
-// Removes each component of a richer base structure and measures the increase of the error. If the increase
-// is large enough, the component is named.
+// structure. Removes each component of the richer structure in turn. A component is named if the held-out
+// error increases enough without it.
 
 #include <cstddef>
 #include <cstdint>

@@ -24,8 +24,8 @@ TcpAddress rtu_at(std::uint16_t port) {
 }
 
 TEST(ModbusRtuTcpLink, ReportsAConnectionClosedBeforeTheFirstResponse) {
-  // The server expects TCP frames. It interprets the RTU frame as the beginning of a longer TCP frame and
-  // waits for more bytes until the test stops it.
+  // The test stops the server before the first request, so the connection is closed before the first
+  // response.
   auto server = std::make_unique<test::ScriptedServer>([](test::Peer&, const test::Bytes&, std::size_t) {});
   ModbusRtuTcpLink link(rtu_at(server->port()));
   ASSERT_EQ(link.open(monotonic_now() + generous), BusStatus::ok) << link.detail();

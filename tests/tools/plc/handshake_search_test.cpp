@@ -101,8 +101,8 @@ struct Command {
   std::uint16_t code = 0;
   std::uint16_t counter = 0;
   bool executed = false;
-  // True in three cases: a busy daemon has refused the command, a later command has replaced this command, or
-  // the gateway that executed the command has died.
+  // True in three cases: the daemon was busy and refused the command; the command was executed, and a later
+  // command has been executed since; the command was executed, and the gateway has died since.
   bool over = false;
   bool reported_refused = false;
 };
