@@ -10,6 +10,7 @@ import statistics
 
 import results_page
 from judging import is_outside
+from results_page import interval
 
 OUTCOMES = [("right", "#2e7d4f"), ("ambiguous_right", "#8fbf9a"), ("partly", "#c9b458"), ("missed", "#b9bec6"),
             ("unexplained", "#8a93a3"), ("wrong", "#b3372e"), ("failed", "#000000")]
@@ -27,16 +28,6 @@ def group_of(result):
 
 def share(rows, *outcomes):
     return 100 * sum(r["outcome"] in outcomes for r in rows) / len(rows) if rows else math.nan
-
-
-def interval(hits, count):
-    """Returns Wilson's 95 % interval of a share [%]."""
-    if count == 0:
-        return "-"
-    p, z = hits / count, 1.96
-    middle = (p + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count) * math.sqrt(p * (1 - p) / count + z * z / (4 * count * count))
-    return f"{100 * p:.1f} % ({100 * max(0, middle - half):.1f} .. {100 * min(1, middle + half):.1f})"
 
 
 def interval_by_seed(hits):

@@ -30,7 +30,7 @@ import campaign  # noqa: E402
 import changing  # noqa: E402
 import results_page  # noqa: E402
 import varying  # noqa: E402
-from blind_page import interval  # noqa: E402
+from results_page import interval  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
 KEYS = ("family", "cause", "strength", "seed", "columns", "zero_mm", "warmer_c", *varying.KEYS)

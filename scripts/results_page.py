@@ -1,6 +1,7 @@
 """Writes the beginning of a page in docs/results: the meaning of the result for a user, and a table of version, date,
 command and conditions. tests/repository/results.py checks that each page has this beginning."""
 import datetime
+import math
 import os
 import pathlib
 import subprocess
@@ -21,3 +22,13 @@ def head(title, meaning, version, command, conditions, date=None):
     """Returns the lines of the beginning of a page. `date` has the format YYYY-MM-DD; the default is today."""
     return [f"# {title}", "", meaning, "", "| version | date | command | conditions |", "|---|---|---|---|",
             f"| {version} | {date or datetime.date.today().isoformat()} | `{command}` | {conditions} |", ""]
+
+
+def interval(hits, count):
+    """Returns Wilson's 95 % interval of a share [%]."""
+    if count == 0:
+        return "-"
+    p, z = hits / count, 1.96
+    middle = (p + z * z / (2 * count)) / (1 + z * z / count)
+    half = z / (1 + z * z / count) * math.sqrt(p * (1 - p) / count + z * z / (4 * count * count))
+    return f"{100 * p:.1f} % ({100 * max(0, middle - half):.1f} .. {100 * min(1, middle + half):.1f})"

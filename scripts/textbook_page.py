@@ -8,7 +8,7 @@ import statistics
 
 import blind_page
 import results_page
-from blind_page import interval
+from results_page import interval
 from trial import HELD_OUT_AT_MOST, NOISE_MM
 
 
