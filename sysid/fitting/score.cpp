@@ -13,6 +13,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// An excursion of the pressure: the interval in which the pressure rises from rest and returns to rest.
 struct Excursion {
@@ -87,16 +88,20 @@ Score score_of(const model::Model& model, const Record& record, const StartState
   score.error_mm.resize(record.size());
   for (std::size_t i = 0; i < record.size(); ++i) {
     score.error_mm[i] = readings[i] - score.prediction_mm[i];
-    if (std::isfinite(score.error_mm[i])) {
-      score.largest_error_mm = std::max(score.largest_error_mm, std::abs(score.error_mm[i]));
-    }
+    if (!std::isfinite(readings[i])) continue;
+    const double size_mm = std::abs(score.error_mm[i]);
+    score.largest_error_mm = std::max(score.largest_error_mm, std::isfinite(size_mm) ? size_mm : infinite);
   }
-  score.rmse_mm = rms(score.error_mm);
+  const std::span<const double> read(readings), errors(score.error_mm);
+  score.rmse_mm = rms_error(read, errors);
   score.rmse_percent_of_span = record.span_mm > 0 ? 100 * score.rmse_mm / record.span_mm : none;
   const std::vector<std::size_t> cycles = cycle_starts(record);
-  const std::span<const double> errors(score.error_mm);
-  score.first_cycle_rmse_mm = cycles.size() > 1 ? rms(errors.first(cycles[1])) : none;
-  score.settled_rmse_mm = cycles.size() > 1 ? rms(errors.subspan(cycles[1])) : none;
+  if (cycles.size() > 1) {
+    score.first_cycle_rmse_mm = rms_error(read.first(cycles[1]), errors.first(cycles[1]));
+    score.settled_rmse_mm = rms_error(read.subspan(cycles[1]), errors.subspan(cycles[1]));
+  } else {
+    score.first_cycle_rmse_mm = score.settled_rmse_mm = none;
+  }
   score.diverges = diverges(score, readings, record.span_mm);
   return score;
 }

@@ -13,7 +13,8 @@ namespace softgrip::sysid {
 /// does not depend on the noise of the readings.
 inline constexpr double bad_percent = 10;
 
-/// A prediction and its errors. An error is reading minus prediction.
+/// A prediction and its errors. An error is reading minus prediction. If the prediction of a reading is not
+/// finite, the RMSE of an interval that contains this reading and the largest error are infinite.
 struct Score {
   std::string name;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the prediction and its errors

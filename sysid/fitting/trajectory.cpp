@@ -39,15 +39,17 @@ std::vector<double> residual(const Record& record, const std::vector<double>& pr
   return difference;
 }
 
-double rms(std::span<const double> values) {
+double rms_error(std::span<const double> readings_mm, std::span<const double> errors_mm) {
   double sum = 0;
   std::size_t count = 0;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    sum += value * value;
+  for (std::size_t i = 0; i < readings_mm.size(); ++i) {
+    if (!std::isfinite(readings_mm[i])) continue;
+    sum += errors_mm[i] * errors_mm[i];
     ++count;
   }
-  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+  if (count == 0) return 0;
+  const double error_mm = std::sqrt(sum / static_cast<double>(count));
+  return std::isfinite(error_mm) ? error_mm : std::numeric_limits<double>::infinity();
 }
 
 double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
@@ -55,7 +57,8 @@ double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
   double sum = 0;
   std::size_t readings = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const double each = rms(residual(records[r], predict(model, records[r], starts[r])));
+    const double each =
+        rms_error(records[r].reading_mm, residual(records[r], predict(model, records[r], starts[r])));
     sum += each * each * static_cast<double>(records[r].readings);
     readings += records[r].readings;
   }

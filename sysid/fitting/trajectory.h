@@ -22,10 +22,12 @@ void add_start(const model::Model& model, const Record& record, const StartState
 /// Returns reading minus prediction for each sample [mm]; NaN for samples without a reading.
 [[nodiscard]] std::vector<double> residual(const Record& record, const std::vector<double>& prediction);
 
-/// Returns the root mean square of the finite values.
-[[nodiscard]] double rms(std::span<const double> values);
+/// Returns the root mean square of the errors at the samples with a reading [mm]. Returns 0 if there is no
+/// reading, and infinity if the error at a reading is not finite.
+/// @param readings_mm, errors_mm  one value per sample; a missing reading is NaN.
+[[nodiscard]] double rms_error(std::span<const double> readings_mm, std::span<const double> errors_mm);
 
-/// Returns the RMSE over all readings [mm], or infinity if a prediction is not finite.
+/// Returns the RMSE over all readings [mm], or infinity if the prediction of a reading is not finite.
 /// @param starts  start state of each record.
 [[nodiscard]] double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
                              const std::vector<Record>& records);

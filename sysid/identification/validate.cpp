@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -84,6 +85,8 @@ std::string verdict_of(const Validation& v) {
   }
   const std::string logs =
       v.scores.size() == 1 ? v.scores.front().name : std::to_string(v.scores.size()) + " logs";
+  if (!std::isfinite(highest))
+    return v.model.name + " does not predict " + logs + ", because a predicted value is not finite.";
   const std::string share = significant(largest_percent(v), 2);
   const std::string size = v.scores.size() == 1 ? significant(highest, 3)
                                                 : significant(lowest, 3) + " to " + significant(highest, 3);

@@ -72,10 +72,10 @@ StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<
   });
   double sum = 0;
   std::size_t count = 0;
-  for (const std::vector<double>& residual_mm : fit.residual_mm) {
-    for (const double r : residual_mm) {
-      if (std::isnan(r)) continue;
-      sum += r * r;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    for (std::size_t i = 0; i < records[k].size(); ++i) {
+      if (std::isnan(records[k].reading_mm[i])) continue;
+      sum += fit.residual_mm[k][i] * fit.residual_mm[k][i];
       ++count;
     }
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -102,6 +103,41 @@ TEST(Score, ErrorOfTheTrueModelEqualsTheNoise) {
   EXPECT_NEAR(score.rmse_mm, 0.05, 0.002);
   EXPECT_NEAR(score.rmse_percent_of_span, 100 * score.rmse_mm / records[0].span_mm, 1e-9);
   EXPECT_NEAR(fast_noise_mm(records[0]), 0.05, 0.003);
+}
+
+TEST(Score, MissingReadingsDoNotCount) {
+  const model::Model model = loaded("bench_twin");
+  auto records = make_records({simulated(model, model::SignalName::sp1, 50, 0.05, 1)}, {});
+  const std::vector<StartState> starts = rest_starts(model, records);
+  records[0].reading_mm[7] = records[0].reading_mm[100] = std::nan("");
+  EXPECT_NEAR(score_of(model, records[0], starts[0], records[0].reading_mm).rmse_mm, 0.05, 0.002);
+  EXPECT_NEAR(rmse_of(model, starts, records), 0.05, 0.002);
+}
+
+TEST(Score, ErrorIsInfiniteIfThePredictionIsNotFinite) {
+  const model::Model model = loaded("bench_twin");
+  const Log log = simulated(model, model::SignalName::tp1, 50, 0.05, 1);
+  const auto records = make_records({log}, {});
+  for (const double value : {std::nan(""), HUGE_VAL}) {
+    std::vector<StartState> starts = rest_starts(model, records);
+    starts[0].offset_mm = value;
+    const Score score = score_of(model, records[0], starts[0], records[0].reading_mm);
+    for (const double error : {score.rmse_mm, score.rmse_percent_of_span, score.largest_error_mm,
+                               score.first_cycle_rmse_mm, score.settled_rmse_mm})
+      EXPECT_EQ(error, HUGE_VAL) << value;
+    EXPECT_TRUE(score.diverges) << value;
+    EXPECT_EQ(rmse_of(model, starts, records), HUGE_VAL) << value;
+    Validation validation = validate_logs(model, {log}, {});
+    validation.scores = {score};
+    EXPECT_NE(verdict_of(validation).find("a predicted value is not finite"), std::string::npos)
+        << verdict_of(validation);
+  }
+}
+
+TEST(Score, ErrorIsInfiniteIfASinglePredictionIsNotFinite) {
+  const std::vector<double> readings{0, std::nan(""), 1}, errors{0.1, std::nan(""), std::nan("")};
+  EXPECT_EQ(rms_error(readings, errors), HUGE_VAL);
+  EXPECT_NEAR(rms_error(std::span(readings).first(2), std::span(errors).first(2)), 0.1, 1e-12);
 }
 
 TEST(Score, ScaledReadingsAreNoDivergence) {

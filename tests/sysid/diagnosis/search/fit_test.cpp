@@ -37,5 +37,15 @@ TEST(WithoutEffects, ReturnsTheReadingsOfTheFingerWithoutTheCauses) {
       << "the effect of the backlash must remain, because only the softening was removed";
 }
 
+TEST(EvaluateStructure, MeanSquareIsInfiniteIfAPredictionIsNaN) {
+  const model::Model bare = loaded("bench_twin");
+  auto records = make_records({simulated(bare, SignalName::tp1, 50, 0.05, 1)}, {});
+  records[0].reading_mm[3] = std::nan("");
+  FitPoint point{bare, rest_starts(bare, records)};
+  EXPECT_NEAR(std::sqrt(evaluate_structure(records, {}, point).mean_square_mm2), 0.05, 0.005);
+  point.starts[0].offset_mm = std::nan("");
+  EXPECT_EQ(evaluate_structure(records, {}, point).mean_square_mm2, HUGE_VAL);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::fit_test
