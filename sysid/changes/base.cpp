@@ -216,9 +216,13 @@ std::size_t order_for(const Base& base) {
 /// Computes the variation of the gain and of the zero offset between the healthy runs.
 void spread(Base& base) {
   std::vector<PairSums> sums(base.units.count() * base.records.size());
+  PairSums offsets;
   for (std::size_t r = 0; r < base.records.size(); ++r) {
-    const std::vector<double> motion =
-        binned(base.records[r], predict_base(base, base.records[r], {}), base.bin_s);
+    const Record& record = base.records[r];
+    const std::vector<double> prediction = predict_base(base, record, {});
+    const std::vector<double> motion = binned(record, prediction, base.bin_s);
+    for (const double offset : binned(record, residual(record, prediction), base.bin_s))
+      offsets.add(offset, offset);
     for (std::size_t b = 0; b < std::min(motion.size(), base.left[r].size()); ++b) {
       const std::size_t unit = base.units.unit_of(r, (static_cast<double>(b) + 0.5) * base.bin_s);
       sums[r * base.units.count() + unit].add(motion[b], base.left[r][b]);
@@ -233,7 +237,9 @@ void spread(Base& base) {
     count += 1;
   }
   const double free = std::max(1.0, count - 1);
-  base.zero_mm = count > 0 ? zeros / count : 0;
+  // The residuals of the cross-validation are not suitable here. If the units are halves of one run, the fit
+  // to the other half has absorbed the zero offset of the run.
+  base.zero_mm = offsets.count > 0 ? offsets.y / offsets.count : 0;
   // The displacement of a single healthy run does not show the spread of the gain between runs. Therefore a
   // spread of at least limits::usual_gain_spread is assumed, and `free_gain` is the difference between the
   // gains of two runs with this spread. Otherwise, the spread is estimated from the units.

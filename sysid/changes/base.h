@@ -66,7 +66,7 @@ struct Base : HealthyModel {
                            ///< least limits::usual_gain_spread for the displacement
   double free_gain = 0;  ///< largest relative difference of the gain that does not count as a change, because
                          ///< a further run of an unchanged finger may show it
-  double zero_mm = 0;    ///< mean difference between the healthy readings and the predictions
+  double zero_mm = 0;    ///< mean of the healthy readings minus the predictions of the selected model
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;

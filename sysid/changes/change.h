@@ -97,7 +97,7 @@ struct JudgedChange {
   /// Mean square of the whitened residual in the later logs, without the causes (`loss_before`) and with the
   /// causes (`loss_left`). A healthy log has a mean square of about 1.
   double loss_before = 1, loss_left = 1;
-  /// Zero offset of the later readings relative to the predictions of the baseline model.
+  /// Zero offset of the later readings minus the zero offset of the healthy readings.
   double zero_mm = 0;
   /// Fitted deviation of the gain from the gain in the healthy logs [%]. It is within the spread of the
   /// healthy logs, so it does not count as a change.

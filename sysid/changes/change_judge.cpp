@@ -332,7 +332,7 @@ class Judge {
       judged.runs.push_back(
           {judged.logs[r], false, rms_about_mean(judged.left[r]), rms_about_mean(judged.explained[r])});
     const LaterReadings::Nuisance nuisance = readings.nuisance(found);
-    judged.zero_mm = nuisance.zero_mm;
+    judged.zero_mm = nuisance.zero_mm - base_.zero_mm;
     judged.gain_percent = 100 * nuisance.gain;
     judged.later_mm = readings.plain_rms({});
     judged.explained_mm = readings.plain_rms(found);

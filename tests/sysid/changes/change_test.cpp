@@ -32,6 +32,16 @@ TEST(Change, DifferentInputAndZeroOffsetAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
+TEST(Change, ZeroOffsetIsRelativeToTheHealthyLogs) {
+  for (const std::size_t runs : {1U, 2U}) {
+    std::vector<Log> healthy = logs_of({.zero_mm = 0.3}, 1);
+    healthy.resize(runs);
+    const auto d = diagnose_change(healthy, logs_of({.zero_mm = 0.4}, 5));
+    ASSERT_TRUE(d) << d.error();
+    EXPECT_NEAR(d->readings.back().zero_mm, 0.1, 0.03) << runs << " healthy logs";
+  }
+}
+
 /// A payload changes the gain and the zero offset at the same time. If a change affects only the gain,
 /// payload must not be an alternative.
 TEST(Change, GainAndZeroChangeTogetherSuggestAPayload) {
