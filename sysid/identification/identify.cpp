@@ -96,6 +96,11 @@ class Run {
     const auto free = free_indices(start_, options_);
     if (!free) return Failure(free.error());
     const FitSpace space(start_, result_.records, free->flat);
+    if (space.size() == 0)
+      return Failure(
+          "nothing can be fitted, because all parameters of the model are fixed, and the logs begin at rest "
+          "with a reading of 0. Fix fewer parameters, or compute the error of the model with softgrip "
+          "validate");
     const FitPoint given{start_, rest_starts(start_, result_.records)};
     std::vector<FitPoint> starts;
     for (const model::Model& point : options_.start_points) starts.push_back({point, given.starts});

@@ -140,7 +140,8 @@ struct Identification {
 
 /// Fits the model `start` to the logs. Returns an error sentence in these cases: there is no log, a log lacks
 /// the measured pressure that options.record.drive requires, the model is invalid, a parameter named in the
-/// options does not exist, or no start point leads to a finite prediction.
+/// options does not exist, no parameter and no start state remains to be fitted, or no start point leads to a
+/// finite prediction.
 [[nodiscard]] tl::expected<Identification, std::string> identify(const std::vector<Log>& logs,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});

@@ -203,7 +203,7 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   u.noise = fit_noise(observed);
 
   std::vector<Index> keep;
-  const double largest = jacobian.colwise().norm().maxCoeff();
+  const double largest = n > 0 ? jacobian.colwise().norm().maxCoeff() : 0;
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const FreeParameter& p = residuals.space().free()[at];

@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "sysid/fitting/bounded_solve.h"
+#include "sysid/fitting/residuals.h"
 #include "sysid/fitting/score.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/identification/identify.h"
 #include "sysid/identification/uncertainty.h"
 #include "sysid/identification/validate.h"
 #include "tests/sysid/simulated.h"
@@ -45,6 +47,27 @@ TEST(NoiseModel, GapsAndSeriesBoundariesDoNotBiasTheCorrelation) {
   first[777] = std::nan("");
   const auto second = autoregressive(0.8, 20'000, 3);
   EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
+}
+
+TEST(Uncertainty, IsEmptyWithoutFreeParameters) {
+  const model::Model model = loaded("bench_twin");
+  const auto records = make_records({simulated(model, model::SignalName::tp1, 50, 0.05, 1)}, {});
+  const auto residuals = residuals_for(records, FitSpace(model, records, {}));
+  ASSERT_EQ(residuals->space().size(), 0U);
+  const Uncertainty uncertainty = uncertainty_at(*residuals, {}, HUGE_VAL);
+  EXPECT_EQ(uncertainty.root.size(), 0);
+  EXPECT_NEAR(uncertainty.noise.deviation_mm, 0.05, 0.005);
+}
+
+TEST(Identify, IsRefusedIfNothingRemainsToBeFitted) {
+  const model::Model truth = loaded("bench_twin");
+  const std::vector<Log> logs{simulated(truth, model::SignalName::tp1, 20, 0, 1)};
+  IdentifyOptions options;
+  options.fixed = {"kelvin_voigt.k0_kpa_per_mm"};
+  options.free = options.fixed;
+  const auto result = identify(logs, truth, options);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().find("nothing can be fitted"), std::string::npos) << result.error();
 }
 
 /// Compares the result with the result of a search on a fine grid.
