@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -210,12 +213,13 @@ std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t
 
 Log thinned_log(const Log& log, std::size_t stride) {
   Log kept = log;
-  for (std::vector<double> Log::*column : {&Log::time_s, &Log::pressure_command_kpa, &Log::displacement_mm,
-                                           &Log::pressure_kpa, &Log::supply_kpa}) {
-    std::vector<double>& values = kept.*column;
-    values.clear();
-    for (std::size_t i = 0; i < (log.*column).size(); i += stride) values.push_back((log.*column)[i]);
-  }
+  const auto thin = [stride](auto& values) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < values.size(); i += stride) std::swap(values[count++], values[i]);
+    values.resize(count);
+  };
+  for (const KnownColumn& known : known_columns) thin(kept.*known.values);
+  for (OtherColumn& other : kept.others) thin(other.cells);
   return kept;
 }
 

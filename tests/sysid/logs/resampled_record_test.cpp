@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace softgrip::sysid::resampled_record_test {
@@ -226,6 +227,23 @@ TEST(FewerReadings, KeepsEveryKthReadingAndAllSamples) {
   EXPECT_EQ(left, 1000);
   EXPECT_EQ(few.reading_mm[0], record.reading_mm[0]);
   EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "no sample must be omitted";
+}
+
+TEST(ThinnedLog, AllColumnsHaveTheSameSamples) {
+  Log log;
+  for (int i = 0; i < 8; ++i) {
+    for (auto* column : {&log.time_s, &log.pressure_command_kpa, &log.displacement_mm, &log.temperature_c})
+      column->push_back(i);
+  }
+  log.others = {{"remark", {"a", "b", "c", "d", "e", "f", "g", "h"}}};
+  const Log thin = thinned_log(log, 3);
+  const std::vector<double> kept{0, 3, 6};
+  for (const auto* column :
+       {&thin.time_s, &thin.pressure_command_kpa, &thin.displacement_mm, &thin.temperature_c})
+    EXPECT_EQ(*column, kept);
+  EXPECT_EQ(thin.others[0].cells, (std::vector<std::string>{"a", "d", "g"}));
+  EXPECT_TRUE(thin.pressure_kpa.empty());
+  EXPECT_EQ(thinned_log(log, 1).time_s, log.time_s);
 }
 
 }  // namespace
