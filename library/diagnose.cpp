@@ -87,12 +87,14 @@ Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const Diagn
 
 Change diagnose_change(const Model& model, const std::vector<Log>& healthy, const std::vector<Log>& later,
                        const DiagnoseOptions& options) {
+  LogUse use = options.use;
+  use.drive = Drive::command;
   const std::vector<sysid::Log> before =
-      library::checked_logs("healthy", healthy, options.use, false, library::needed_for(model));
+      library::checked_logs("healthy", healthy, use, false, library::needed_for(model));
   const std::vector<sysid::Log> now =
-      library::checked_logs("later", later, options.use, false, library::needed_for(model));
+      library::checked_logs("later", later, use, false, library::needed_for(model));
   sysid::ChangeOptions search;
-  search.held = options.use.held;
+  search.held = use.held;
   search.given = model.parts().value;
   search.seed = options.seed;
   search.threads = options.threads;

@@ -154,6 +154,17 @@ TEST_F(LibraryAndCommand, ChangeDiagnosesAreIdentical) {
   EXPECT_NE(found.verdict, "unchanged");
 }
 
+TEST_F(LibraryAndCommand, AChangeDiagnosisDoesNotUseDriveAndBegin) {
+  const std::vector<Log> healthy{read_log(path("one.csv")), read_log(path("two.csv"))};
+  const std::vector<Log> later{read_log(path("three.csv"))};
+  ASSERT_TRUE(later.front().pressure_kpa.empty());
+  DiagnoseOptions options;
+  options.use = {Drive::measured, Begin::unknown, false};
+  const Change found = diagnose_change(Model::load(model_), healthy, later, options);
+  const Change expected = diagnose_change(Model::load(model_), healthy, later);
+  EXPECT_EQ(plain(found.json, {"wall_s"}), plain(expected.json, {"wall_s"}));
+}
+
 /// Starts `work` and requests its stop after the duration `after`. Returns the time [s] from the request to
 /// the end of `work`. The test fails if `work` does not end with the exception Cancelled.
 template <class Work>
