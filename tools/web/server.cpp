@@ -102,8 +102,9 @@ bool Server::reduce_connection_limit() {
   const std::size_t before = connections_.size();
   max_connections_ = max_connections_for(settings_.max_connections, descriptor_limit());
   std::size_t number = 0;
-  for (Connection& connection : connections_)
-    connection.closing = connection.closing || ++number > max_long_lived(max_connections_);
+  for (Connection& connection : connections_) {
+    if (!connection.closing && ++number > max_long_lived(max_connections_)) evict(connection);
+  }
   remove_closing();
   return connections_.size() < before;
 }
@@ -198,9 +199,8 @@ void Server::respond(Connection& connection, Outcome outcome, Nanoseconds now) {
   if (connection.closing || client.unsent() == 0) return;
   // The socket did not accept all bytes, so the connection becomes a long-lived connection until the
   // remaining bytes are sent.
-  connection.closing =
-      !make_room_for_long_lived(connection, now) || !make_room_for_bytes(&connection, connection.role);
-  if (connection.closing) client.drop_unsent();
+  if (!make_room_for_long_lived(connection, now) || !make_room_for_bytes(&connection, connection.role))
+    evict(connection);
 }
 
 void Server::send_error(Connection& connection, int status, Nanoseconds now) {
@@ -261,7 +261,10 @@ void Server::send_messages(Nanoseconds now) {
     Client& client = connection.client;
     if (client.phase() != Phase::streaming || connection.closing) continue;
     if (!check || has_same_role(connection.stream_reader, now)) {
-      connection.closing = !client.add(messages) || !client.send_pending(now);
+      if (!client.add(messages))
+        evict(connection);
+      else
+        connection.closing = !client.send_pending(now);
     } else {
       client.finish();
       connection.closing = !client.add("event: ended\ndata: null\n\n");
@@ -304,8 +307,8 @@ Server::Candidates Server::candidates_except(const Connection* connection) {
   return candidates;
 }
 
-/// Marks the connection for removal at the end of the cycle. Frees the connection's unsent bytes at once,
-/// because many responses may be created before the end of the cycle.
+/// Marks a connection for which a limit leaves no room for removal at the end of the cycle. Frees the
+/// connection's unsent bytes at once, because many responses may be created before the end of the cycle.
 void Server::evict(Connection& connection) {
   connection.closing = true;
   connection.client.drop_unsent();

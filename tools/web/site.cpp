@@ -222,7 +222,7 @@ std::string Site::metrics() const {
                  "Number of bytes that wait in softgrip-web until they can be sent to clients.");
   metrics.sample(static_cast<double>(counts_.unsent));
   metrics.family("softgrip_web_turned_away_total", counter,
-                 "Number of connections that were refused, or that were closed to make room for others.");
+                 "Number of connections that were refused or closed because a limit was reached.");
   metrics.sample(static_cast<double>(counts_.rejected));
   metrics.family("softgrip_web_answers_total", counter, "HTTP responses, by status.");
   for (const auto& [status, count] : counts_.responses)

@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/net/listener.h"
+#include "tools/web/connection_limits.h"
 #include "tools/web/page/page_files.h"
 
 namespace softgrip::web::server_test {
@@ -44,7 +45,7 @@ class ServerTest : public ::testing::Test {
     end_ = Descriptor(::dup(signals.get()));
     thread_ =
         std::thread([this, socket = std::move(listener->socket), signals = std::move(signals)]() mutable {
-          Server(settings_, {}, "", std::move(socket), std::move(signals)).run();
+          Server(settings_, {}, large_, std::move(socket), std::move(signals)).run();
         });
   }
   ~ServerTest() override {
@@ -162,6 +163,32 @@ TEST_F(ServerTest, UnreadDownloadsDoNotBlockCommands) {
   }
   const std::string file = ask_with_retries(get_file);
   EXPECT_TRUE(file.ends_with(large_)) << "a client that reads replaces one that does not read";
+}
+
+TEST_F(ServerTest, CountsAConnectionWhoseResponseDoesNotFit) {
+  const auto rejected = [this] {
+    const std::string name = "\nsoftgrip_web_turned_away_total ";
+    const std::string metrics = ask("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const std::size_t at = metrics.find(name);
+    return at == std::string::npos ? -1 : std::stoi(metrics.substr(at + name.size()));
+  };
+  std::vector<Descriptor> streams;
+  for (std::size_t i = 0; i < max_long_lived(settings_.max_connections); ++i) {
+    streams.push_back(connect());
+    send_text(streams.back(), get_stream);
+    char first = 0;
+    ASSERT_EQ(::recv(streams.back().get(), &first, 1, 0), 1);
+  }
+  const int before = rejected();
+  ASSERT_GE(before, 0);
+  // The client of this response does not read at first, so the response needs the place of a long-lived
+  // connection.
+  const Descriptor slow = connect();
+  send_text(slow, "GET /chart.js HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  for (int attempt = 0; attempt < 100 && rejected() == before; ++attempt)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(rejected(), before + 1);
+  EXPECT_LT(all_from(slow).size(), large_.size());
 }
 
 TEST_F(ServerTest, ATruncatedFileEndsTheResponse) {
