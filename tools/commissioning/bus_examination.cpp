@@ -99,10 +99,11 @@ class BusInquiry {
   Heard ask(const RegisterRead& question) {
     const double patience_s = std::max(rig_.loop.exchange_deadline_s, shortest_patience_s);
     Heard heard{BusStatus::timed_out, 0, {}, {}};
-    if (monotonic_now() >= end_) return heard;
+    const Nanoseconds now = monotonic_now();
+    if (now >= end_) return heard;
     if (link_ == nullptr) link_ = drivers::make_link(address_);
     if (!link_->is_open()) {
-      const Nanoseconds connected = monotonic_now() + rig_.reconnect.connect_deadline.count();
+      const Nanoseconds connected = std::min(now + rig_.reconnect.connect_deadline.count(), end_);
       heard.status = link_->open(connected);
       if (heard.status == BusStatus::ok) heard.status = link_->settle(connected);
       heard.detail = link_->detail();
@@ -111,7 +112,7 @@ class BusInquiry {
     heard.status =
         link_->ask(static_cast<std::uint8_t>(question.unit),
                    {.function = question.function, .address = question.address, .count = question.count},
-                   monotonic_now() + nanoseconds(patience_s));
+                   std::min(monotonic_now() + nanoseconds(patience_s), end_));
     heard.detail = link_->detail();
     heard.exception = link_->exception_code();
     if (heard.status != BusStatus::ok) return heard;
