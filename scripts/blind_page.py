@@ -174,7 +174,7 @@ def detection_limits(results):
 
 
 def table(results):
-    lines = ["| hidden cause | strength | number of cases | right | ambiguous, true cause listed | partly | missed | wrong | causes that are named instead |",
+    lines = ["| hidden cause | strength | number of cases | right | ambiguous, true cause listed | partly | missed, unexplained or failed | wrong | causes that are named instead |",
              "|---|---|---|---|---|---|---|---|---|"]
     for (name, strength), rows in by_group(results):
         count = collections.Counter(r["outcome"] for r in rows)
@@ -217,6 +217,7 @@ def write(path, results, planned, command, variation, version):
               "An outcome is *right* if exactly the true causes are named, each without an alternative. In a case without an effect (*clean*), an outcome is right if no cause is named and no error remains unexplained. "
               "In a case with an effect that softgrip does not model (*outside*), an outcome is right if the verdict is `unexplained`, or if only the cause is named that describes the effect correctly "
               "(`valve_lag` for `outside_fill_vent_lag`, `hysteresis_shape` for `outside_stop_operators`). An outcome is *partly* right if only some of several true causes are named or listed. "
-              "An outcome is *missed* if no cause is named although the finger has an effect. An outcome is *wrong* if the finger has neither a named cause nor any of its alternatives, "
+              "An outcome is *missed* if no cause is named although the finger has an effect. An outcome is *unexplained* if "
+              "the finger has no effect, but an error remains unexplained. A case is *failed* if the diagnosis gives no result. An outcome is *wrong* if the finger has neither a named cause nor any of its alternatives, "
               "also if the true cause is named as well."]
     path.write_text("\n".join(lines) + "\n")

@@ -13,6 +13,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE / "textbook"), str(HERE.parents[1] / "scripts")]
 
 import blind_campaign  # noqa: E402
+import blind_page  # noqa: E402
 import campaign  # noqa: E402
 import changed_campaign  # noqa: E402
 import changing  # noqa: E402
@@ -136,6 +137,12 @@ class Records(unittest.TestCase):
         page = changed_campaign.page(rows, "command", 5, varying.text(arguments(variation=1.0)), "softgrip 0.1.0")
         self.assertIn("Run-to-run variation of strength 1:", page)
         self.assertIn("| 1 | 1 |\n| 3 | 0.15 |", page)
+
+    def test_the_blind_table_names_all_outcomes_of_a_column(self):
+        rows = [{"causes": [], "strength": 0, "outcome": outcome} for outcome in ("right", "unexplained", "failed")]
+        head, _, clean = blind_page.table(rows)
+        cells = dict(zip(*([cell.strip() for cell in line.strip("|").split("|")] for line in (head, clean))))
+        self.assertEqual((cells["right"], cells["missed, unexplained or failed"]), ("1", "2"))
 
 
 class Help(unittest.TestCase):
