@@ -108,8 +108,10 @@ def page(rows, command, planned, variation, version):
     changed = [r for r in rows if r["cause"] != "none" and r["outcome"] != "failed"]
     still = [r for r in rows if r["cause"] == "none" and r["outcome"] != "failed"]
     failed = sum(r["outcome"] == "failed" for r in rows)
+    stopped = (" The campaign was stopped before its end, so the simulated cases are a random sample of the planned cases."
+               if len(rows) < planned else "")
     lines = [*results_page.head("Campaign of changed fingers", meaning(changed, still), version, command,
-                                f"{len(rows)} of {planned} planned cases were simulated, and {failed} of these cases failed. The campaign was stopped before its end, so the simulated cases are a random sample of the planned cases."),
+                                f"{len(rows)} of {planned} planned cases were simulated, and {failed} of these cases failed.{stopped}"),
              *changing_text(), "", variation, "", "| measure | required | measured (95 % interval) | number of cases |", "|---|---|---|---|"]
     for strength, wanted in ((0.15, 90), (1, 97)):
         own = [r for r in changed if r["strength"] == strength]

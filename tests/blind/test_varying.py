@@ -134,7 +134,12 @@ class Records(unittest.TestCase):
             return world if runs == 3 else {**world, "baseline_runs": runs}
         rows = [row(1, 1, "first"), row(1, 0.15, "missed"), row(3, 1, "first"), row(3, 0.15, "listed"),
                 row(3, 0, "unchanged", "none")]
-        page = changed_campaign.page(rows, "command", 5, varying.text(arguments(variation=1.0)), "softgrip 0.1.0")
+        def written(planned):
+            return changed_campaign.page(rows, "command", planned, varying.text(arguments(variation=1.0)), "softgrip 0.1.0")
+
+        page = written(5)
+        self.assertNotIn("stopped before its end", page)
+        self.assertIn("stopped before its end", written(6))
         self.assertIn("Run-to-run variation of strength 1:", page)
         self.assertIn("| 1 | 1 |\n| 3 | 0.15 |", page)
 
