@@ -83,7 +83,7 @@ def problems_of(row, seen):
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", row.name or ""):
         yield f"name {row.name!r}: letters, digits, - _ . are meant"
     if row.name in seen:
-        yield f"name {row.name!r} stands in line {seen[row.name]} already"
+        yield f"name {row.name!r} is already used in line {seen[row.name]}"
     if row.task not in TASKS:
         yield f"task {row.task!r}: one of {', '.join(TASKS)} is meant"
         return

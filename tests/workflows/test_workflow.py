@@ -115,7 +115,7 @@ class Workflow(unittest.TestCase):
                            ("y", "diagnose", "a.csv", "", "@x", ""), ("y", "identify", "'", "", "", ""))
         said = self.run_table(table, expect=3).stderr
         for line, what in ((2, "name 'a b'"), (2, "identify needs data"), (3, "task 'cook'"),
-                           (4, "baseline @x: no row of that name has the task baseline"), (5, "name 'y' stands in line 4 already"),
+                           (4, "baseline @x: no row of that name has the task baseline"), (5, "name 'y' is already used in line 4"),
                            (5, "data: No closing quotation")):
             self.assertRegex(said, rf"rows\.csv:{line}: {what}")
         self.assertIn("no column 'task'", self.run_table(self.write("name\na\n"), expect=3).stderr)
