@@ -55,7 +55,7 @@ class Recording:
                 continue
             data = path.read_bytes()
             if hashlib.sha256(data).hexdigest() == file["sha256"]:
-                rig = yaml.safe_load(data)
+                rig = yaml.load(data, Loader=yaml.CSafeLoader)  # 6 times faster than the loader in Python
                 shared = rig.get("channel_defaults", {})
                 self.rest_kpa = {c["name"]: {**shared, **c}.get("rest_kpa", 0) for c in rig["channels"]}
                 return {c["name"]: {**shared.get("limits", {}), **c.get("limits", {})} for c in rig["channels"]}
