@@ -39,9 +39,9 @@ sanitized() {
 case ${1:-} in
   "" | build)
     [ -z "${1:-}" ] || only_build=true
-    sanitized asan-ubsan base_test drivers_test emulator_test
-    # Omit the other tests of the drivers, because the drivers start no threads.
-    sanitized tsan base_test daemon_test daemon_process_test
+    sanitized asan-ubsan base_test base_threads_test drivers_test emulator_test
+    # Omit the other tests of the drivers and of base, because they start no threads.
+    sanitized tsan base_threads_test daemon_test daemon_process_test
     ;;
   all)
     without='^$'
