@@ -6,6 +6,9 @@
 # The other measures only reduce the compile time and need SOFTGRIP_PRECOMPILE. PRECOMPILE names a header that most files
 # of the room include and that takes most of their compile time. The files of a room are compiled as one file, because they
 # use the same headers and templates. So the names in their unnamed namespaces must differ.
+#
+# The rooms in SOFTGRIP_LINKED_ROOMS are not compiled. The programs are linked with the libraries of these rooms in
+# build/release.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
   cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
@@ -32,7 +35,11 @@ function(softgrip_room folder)
     get_property(used_folders GLOBAL PROPERTY softgrip_folders_of_${used})
     list(APPEND reachable ${used_folders})
   endforeach()
-  if(sources)
+  if(folder IN_LIST SOFTGRIP_LINKED_ROOMS)
+    add_library(${target} STATIC IMPORTED GLOBAL)
+    set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${PROJECT_SOURCE_DIR}/build/release/lib${target}.a)
+    target_link_libraries(${target} INTERFACE ${links})
+  elseif(sources)
     add_library(${target} STATIC ${sources})
     target_link_libraries(${target} PUBLIC ${links})
     softgrip_for_shared_library(${target})
