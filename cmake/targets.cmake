@@ -255,10 +255,30 @@ function(softgrip_discover name filter label)
     if(label)
       list(APPEND ARGN LABELS ${label})
     endif()
+    if(SOFTGRIP_SANITIZE AND NOT label STREQUAL "realtime")
+      softgrip_two_parts(${name} "${filter}" "${label}" TIMEOUT 36000 ${ARGN})
+      return()
+    endif()
     gtest_discover_tests(${name} NO_PRETTY_VALUES TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60
       TEST_LIST ${name}_tests_${label}
       PROPERTIES TIMEOUT 600 ${ARGN})
   endif()
+endfunction()
+
+# In a build with a sanitizer, the start of a process takes more time than most tests. Therefore two processes run all
+# tests that measure no real time. CTest reads the file of a program only if the program has been built.
+function(softgrip_two_parts name filter label)
+  set(content "if(EXISTS \"$<TARGET_FILE:${name}>\")\n")
+  foreach(part IN ITEMS 0 1)
+    set(test ${name}.${label}part${part})
+    list(TRANSFORM ARGN REPLACE "(.+)" "\"\\1\"" OUTPUT_VARIABLE properties)
+    list(JOIN properties " " properties)
+    string(APPEND content "  add_test(${test} \"$<TARGET_FILE:${name}>\" \"--gtest_filter=${filter}\")\n"
+      "  set_tests_properties(${test} PROPERTIES ENVIRONMENT \"GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${part}\" ${properties})\n")
+  endforeach()
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${name}_${label}parts.cmake)
+  file(GENERATE OUTPUT ${file} CONTENT "${content}endif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
 endfunction()
 
 # softgrip_fuzzer(NAME FILES... [ROOMS room ...] [LINK ...])  adds a libFuzzer target; requires the option
