@@ -35,7 +35,7 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
   for (std::size_t r = 0; r < records.size(); ++r) {
     const std::vector<double> drive = binned(records[r], records[r].drive_kpa, readings.base().bin_s);
     for (std::size_t b = 0; b < std::min(drive.size(), added[r].size()); ++b) {
-      if (!(drive[b] > 0.9 * largest_kpa) || !std::isfinite(added[r][b])) continue;
+      if (!(std::abs(drive[b]) > 0.9 * largest_kpa) || !std::isfinite(added[r][b])) continue;
       sum += added[r][b];
       count += 1;
     }

@@ -47,8 +47,8 @@ std::vector<double> softened(const Softening& softening, const Record& record, d
   double most_kpa = record.largest_before_kpa;
   std::vector<double> factor(record.size());
   for (std::size_t i = 0; i < record.size(); ++i) {
-    most_kpa = std::max(most_kpa, record.drive_kpa[i]);
-    const double below_kpa = most_kpa - record.drive_kpa[i];
+    most_kpa = std::max(most_kpa, std::abs(record.drive_kpa[i]));
+    const double below_kpa = most_kpa - std::abs(record.drive_kpa[i]);
     const double part = softening.range_kpa > 0 ? std::tanh(below_kpa / softening.range_kpa) : 1;
     factor[i] = 1 + softening.share * most_kpa / largest_kpa * part;
   }
@@ -59,7 +59,7 @@ std::vector<double> added_by(const Crescent& crescent, const Record& record, dou
   double between = 0;
   std::vector<double> added(record.size());
   for (std::size_t i = 0; i < record.size(); ++i) {
-    const double down = std::max(record.drive_kpa[i], 0.0) / largest_kpa;
+    const double down = std::abs(record.drive_kpa[i]) / largest_kpa;
     const double up = std::pow(down, crescent.exponent);
     between = std::clamp(between, std::min(up, down), std::max(up, down));
     added[i] = crescent.share * (between - 0.5 * (up + down));
@@ -82,7 +82,7 @@ std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& lo
   for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
     const double dt = record.duration_s[i];
     const double way = std::abs(record.drive_kpa[i] - record.drive_kpa[i - 1]);
-    lost += dt * loss.rate_kpa_per_s * std::max(pressure_kpa[i], 0.0) / record.largest_kpa;
+    lost += dt * loss.rate_kpa_per_s * pressure_kpa[i] / record.largest_kpa;
     lost *= std::exp(-dt / loss.recovery_s - way / loss.way_kpa);
     pressure_kpa[i] -= lost;
   }

@@ -11,8 +11,8 @@
 namespace softgrip::sysid {
 
 /// Pressure loss d. It increases while the valve does not move and decreases while the valve moves. The
-/// equation is d' = rate p/largest - d (1/recovery + |command'|/way), where p is the pressure and `largest`
-/// is the largest command in the record.
+/// equation is d' = rate p/largest - d (1/recovery + |command'|/way), where p is the pressure (negative for a
+/// vacuum) and `largest` is the largest command in the record.
 struct PressureLoss {
   double rate_kpa_per_s = 0;
   double recovery_s = 5;

@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Lowest value of a quantity over all bins, and difference between its highest and lowest value.
+/// Range of a quantity over all bins.
 class Extent {
  public:
   Extent(const std::vector<OperatingPoint>& conditions, double OperatingPoint::*of) : of_(of) {
@@ -16,16 +16,21 @@ class Extent {
     if (conditions.empty()) return;
     const auto [low, high] = std::minmax_element(conditions.begin(), conditions.end(), less);
     low_ = (*low).*of;
-    range_ = (*high).*of - low_;
+    high_ = (*high).*of;
   }
   /// Returns the position of a value between the lowest value (0) and the highest value (1).
   [[nodiscard]] double share(const OperatingPoint& condition) const {
-    return range_ > 0 ? (condition.*of_ - low_) / range_ : 0;
+    return high_ > low_ ? (condition.*of_ - low_) / (high_ - low_) : 0;
+  }
+  /// Returns the position of a value between the end of the range with the smaller magnitude (0) and the
+  /// other end (1). The rest of a vacuum actuator is its highest pressure.
+  [[nodiscard]] double share_from_rest(const OperatingPoint& condition) const {
+    return std::abs(high_) < std::abs(low_) ? 1 - share(condition) : share(condition);
   }
 
  private:
   double OperatingPoint::*of_;
-  double low_ = 0, range_ = 0;
+  double low_ = 0, high_ = 0;
 };
 
 }  // namespace
@@ -49,7 +54,7 @@ std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>
   std::vector<bool> required;
   required.reserve(conditions.size());
   for (const OperatingPoint& at : conditions) {
-    const bool no_pressure = pressure.share(at) <= limits::rest_share;
+    const bool no_pressure = pressure.share_from_rest(at) <= limits::rest_share;
     const bool still = at.rate_kpa_per_s <= limits::rest_share * highest_rate;
     switch (appears) {
       case Appears::anywhere:

@@ -32,9 +32,10 @@ struct OperatingPoint {
 [[nodiscard]] std::vector<double> rates_of(const Record& record);
 
 /// Returns one value per bin: true if a cause with this condition must have an effect in the bin. A pressure
-/// counts as zero if it exceeds the lowest pressure by at most limits::rest_share of the pressure range. A
-/// rate counts as zero if it is at most limits::rest_share of the highest rate, and as fast if it exceeds
-/// half the highest rate. A displacement counts as large in the upper half of its range.
+/// counts as zero if its distance to the end of the pressure range with the smaller magnitude is at most
+/// limits::rest_share of the range. For a vacuum actuator, this end is the highest pressure. A rate counts as
+/// zero if it is at most limits::rest_share of the highest rate, and as fast if it exceeds half the highest
+/// rate. A displacement counts as large in the upper half of its range.
 [[nodiscard]] std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions);
 
 /// Returns advice for the user if the data do not meet the condition `appears`. The advice describes a

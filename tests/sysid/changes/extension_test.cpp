@@ -48,6 +48,18 @@ TEST(Extension, LeakLowersTheHeldPressureUntilTheCommandMoves) {
   EXPECT_EQ(pressure_behind({}, {}, r, r.drive_kpa), r.drive_kpa);
 }
 
+TEST(Extension, EffectsOnAVacuumActuatorMirrorThoseOnAPressureActuator) {
+  const Record r = record();
+  Record vacuum = r;
+  for (double& p : vacuum.drive_kpa) p = -p;
+  EXPECT_EQ(softened({0.1, 5}, vacuum, 60), softened({0.1, 5}, r, 60));
+  EXPECT_EQ(added_by({0.1, 2}, vacuum, 60), added_by({0.1, 2}, r, 60));
+  const std::vector<double> p = pressure_behind({}, {0.5, 5, 2}, r, r.drive_kpa);
+  const std::vector<double> mirrored = pressure_behind({}, {0.5, 5, 2}, vacuum, vacuum.drive_kpa);
+  ASSERT_NE(p, r.drive_kpa);
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_EQ(mirrored[i], -p[i]) << i;
+}
+
 TEST(Extension, SofteningStartsBelowThePreviousLargestPressure) {
   Record r = record();
   r.drive_kpa.assign(r.size(), 20.0);

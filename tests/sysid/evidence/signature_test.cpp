@@ -32,6 +32,13 @@ TEST(Signature, TheScaleAndTheOffsetOfThePressureDoNotMatter) {
     EXPECT_EQ(required_at(appears, other), required_at(appears, grip()));
 }
 
+TEST(Signature, AVacuumActuatorRestsAtItsHighestPressure) {
+  std::vector<OperatingPoint> vacuum = grip();
+  for (OperatingPoint& at : vacuum) at.pressure_kpa = -at.pressure_kpa;
+  for (const Appears appears : {Appears::at_rest, Appears::held, Appears::moving, Appears::displaced})
+    EXPECT_EQ(required_at(appears, vacuum), required_at(appears, grip()));
+}
+
 TEST(Signature, RunWithoutRestHasNoSampleAtRest) {
   const std::vector<OperatingPoint> sine{{0, 30, 0}, {30, 30, 5}, {60, 30, 10}, {30, 30, 5}, {0, 30, 0}};
   const std::vector<bool> at_rest = required_at(Appears::at_rest, sine);
