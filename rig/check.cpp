@@ -59,10 +59,13 @@ std::size_t score(const document::Document& document, const Signature& signature
 }
 
 void report_unknown(const document::Document& document, document::Problems& problems) {
-  problems.add(document.problem(document.root.at,
-                                "this file is not a rig, a board map, a model or a sequence",
-                                "required keys: `board` and `channels` in a rig, `inputs` and `outputs` in a "
-                                "board map, `actuator` in a model, `steps` in a sequence"));
+  problems.add(
+      document.problem(document.root.at,
+                       "this file is not a rig, a board map, a model, a sequence, a file of softgrip-plc or "
+                       "a file of softgrip-web",
+                       "required keys: `board` and `channels` in a rig, `inputs` and `outputs` in a "
+                       "board map, `actuator` in a model, `steps` in a sequence, `registers` in a file of "
+                       "softgrip-plc, `access` in a file of softgrip-web"));
 }
 
 /// A rig, and the document that contains the locations of its keys in the file.
