@@ -1,5 +1,6 @@
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/enum_table.h"
 #include "base/numbers.h"
@@ -37,11 +38,13 @@ std::string readings_sentence(const Diagnosis& d) {
       wrong += ", and some readings repeat";
     else
       wrong = "Readings repeat";
+    std::vector<std::string> forms;
     if (d.sampling.interval_s > 0)
-      wrong += ": a new reading arrives every " + significant(d.sampling.interval_s, 2) + " s";
+      forms.push_back("a new reading arrives every " + significant(d.sampling.interval_s, 2) + " s");
     if (d.sampling.frozen_s > 0)
-      wrong +=
-          ": the sensor is frozen for " + significant(d.sampling.frozen_s, 2) + " s while the command moves";
+      forms.push_back("the sensor is frozen for " + significant(d.sampling.frozen_s, 2) +
+                      " s while the command moves");
+    if (!forms.empty()) wrong += " (" + enumerated(forms, ", and ") + ")";
   }
   if (d.lead)
     wrong += (wrong.empty() ? "" : ". ") + std::string("The readings are ") + significant(d.lead->lead_s, 3) +

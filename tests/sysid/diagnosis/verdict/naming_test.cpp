@@ -96,6 +96,16 @@ TEST(VerdictSentence, ReportsAReductionOnlyIfTheErrorDecreases) {
             "which no finger has; the held-out error is 2.3 mm without and 2.5 mm with it.");
 }
 
+TEST(VerdictSentence, StatesBothFormsOfRepeatedReadings) {
+  Diagnosis d;
+  d.verdict = Verdict::cause_found;
+  d.extended_rmse_mm = 0.4;
+  d.sampling = {.interval_s = 0.1, .frozen_s = 3, .present = true};
+  EXPECT_EQ(verdict_sentence(d),
+            "Readings repeat (a new reading arrives every 0.1 s, and the sensor is frozen for 3 s while the "
+            "command moves); without these readings the recalibrated model's error is 0.4 mm.");
+}
+
 TEST(DataWarnings, ReportUndeterminedHysteresisWithoutUnloading) {
   Log ramp;
   ramp.name = "ramp";
