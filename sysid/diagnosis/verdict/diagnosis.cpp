@@ -289,7 +289,7 @@ class Diagnostician {
     nulls.seed = options_.seed;
     if (options_.progress) {
       nulls.progress = [&](std::size_t done) {
-        options_.progress("null campaign " + std::to_string(done) + " of " +
+        options_.progress("data simulated without a cause: " + std::to_string(done) + " of " +
                           std::to_string(options_.null_campaigns));
       };
     }

@@ -19,9 +19,9 @@ TEST(RestEstimate, RestartsAtANewTotalOrASmallerNumber) {
   RestEstimate estimate;
   (void)estimate.left_s("start 1 of 20", 0);
   (void)estimate.left_s("start 11 of 20", 10);
-  EXPECT_LT(estimate.left_s("null campaign 12 of 19", 11), 0);
-  EXPECT_NEAR(estimate.left_s("null campaign 13 of 19", 13), 12, 1e-9);
-  EXPECT_LT(estimate.left_s("null campaign 1 of 19", 14), 0);
+  EXPECT_LT(estimate.left_s("data simulated without a cause: 12 of 19", 11), 0);
+  EXPECT_NEAR(estimate.left_s("data simulated without a cause: 13 of 19", 13), 12, 1e-9);
+  EXPECT_LT(estimate.left_s("data simulated without a cause: 1 of 19", 14), 0);
   EXPECT_LT(estimate.left_s("choosing the ridge", 15), 0);
   EXPECT_LT(estimate.left_s("one of many", 16), 0);
 }
