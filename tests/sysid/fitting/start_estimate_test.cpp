@@ -16,10 +16,13 @@
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
+#include "tests/sysid/root_mean_square.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::start_estimate_test {
 namespace {
+
+using test::rms;
 
 using model::SignalName;
 

@@ -13,9 +13,12 @@
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_judge.h"
 #include "sysid/structure/structure_model.h"
+#include "tests/sysid/root_mean_square.h"
 
 namespace softgrip::sysid::linear_modes_test {
 namespace {
+
+using test::rms;
 
 constexpr double noise_mm = 0.02;
 

@@ -28,10 +28,13 @@
 #include "sysid/structure/structure_model.h"
 #include "sysid/structure/structure_projection.h"
 #include "sysid/structure/valve_stage.h"
+#include "tests/sysid/root_mean_square.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::structure_test {
 namespace {
+
+using test::rms;
 
 using model::SignalName;
 
