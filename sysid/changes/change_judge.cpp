@@ -64,6 +64,18 @@ std::string unfamiliar_input(double factor) {
          significant(factor, 2) + " (mean square). Record a healthy log with such an input";
 }
 
+/// Returns true if the gain of the later logs differs from the healthy gain by more than the gains of two
+/// runs of a finger usually differ.
+bool has_unusual_gain(const JudgedChange& judged) {
+  return std::abs(judged.gain_percent) > 100 * deviate_between_two_runs * limits::usual_gain_spread;
+}
+
+std::string unusual_gain(double percent) {
+  return "The gain in the later logs differs by " + significant(percent, 3) +
+         " % from the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
+         "this difference is not significant. Record more healthy logs";
+}
+
 /// Evaluates one quantity, the displacement or the pressure. Computes the spread of the healthy records and
 /// finds the causes of a change in the later records.
 class Judge {
@@ -126,6 +138,8 @@ class Judge {
     }
     accept_named(diagnosis.causes, judged);
     finish(readings, effects, found, judged);
+    if (base_.judged == Judged::displacement && has_unusual_gain(judged))
+      diagnosis.warnings.push_back(unusual_gain(judged.gain_percent));
     diagnosis.readings.push_back(std::move(judged));
   }
 

@@ -163,5 +163,21 @@ TEST_F(ChangeJudge, ADisagreementAboutHealthyLogsIsSubtracted) {
   EXPECT_GT(added_disagreement(base_, ramps).loss, 0);
 }
 
+TEST(UnusualGain, IsStatedIfTheSpreadOfTheHealthyLogsContainsIt) {
+  Base base = fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
+  base.gain_spread = 0.1;
+  base.free_gain = 0.3;
+  const auto warnings = [&](double gain) {
+    ChangeDiagnosis diagnosis;
+    judge_change(base, false, make_records(test::logs_of({.gain = gain}, 5), {}), {}, diagnosis);
+    EXPECT_TRUE(diagnosis.causes.empty());
+    return static_cast<int>(std::count_if(
+        diagnosis.warnings.begin(), diagnosis.warnings.end(),
+        [](const std::string& text) { return text.find("is not significant") != std::string::npos; }));
+  };
+  EXPECT_EQ(warnings(0.17), 1);
+  EXPECT_EQ(warnings(0.2), 0);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::change_judge_test
