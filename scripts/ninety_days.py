@@ -297,7 +297,7 @@ The gain of the left finger changes by {100 * GAIN_PER_C["left"]:g} % per °C, a
 
 ## Detected changes
 
-{told}The column "day of the warning" contains the first day, from the first day of the change on, on which `softgrip health` reported that the difference between the two fingers had changed (for a change of both fingers: that the rig had changed). A report with the word `unclear` does not name the changed finger. A report with the word `shared` means that the indicator changed equally for both fingers. `softgrip health` then assumes that the rig has changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
+{told}The column "day of the warning" contains the first day, from the first day of the change on, on which `softgrip health` reported that the difference between the two fingers had changed (for a change of both fingers: that the rig had changed). A report with the word `unclear` does not name the changed finger. A report with the word `shared` means that the indicator changed in the same direction for both fingers. `softgrip health` then assumes that the rig has changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
 
 ## Healthy days
 
