@@ -46,7 +46,7 @@ struct Note {
 
 struct HealthOptions {
   /// Mean number of points of a healthy finger between two false alarms, counted over all its indicators; at
-  /// least 20.
+  /// least 20. The charts of the differences from the peer fingers are not included in this number.
   double false_alarm_points = 3650;
   bool by_day = true;  ///< true: all runs of a day are one point; false: every run is a point
 
