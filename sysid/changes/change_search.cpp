@@ -13,11 +13,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Penalty for each parameter of an effect, in the unit of the sum of the squared whitened residuals. An
-/// unnecessary parameter reduces this sum by more than the penalty with a probability of 0.5 % (chi-square
-/// with one degree of freedom).
-constexpr double price_of_a_number = 8;
-
 double beyond_usual(const ScoredEffect& scored) {
   return scored.gain - scored.usual;
 }
@@ -59,10 +54,6 @@ Ties ties_in(const LaterReadings& readings, std::uint64_t seed) {
 
 double price_per_row(const LaterReadings& readings, const Effect& effect) {
   return price_of(effect) / static_cast<double>(std::max<std::size_t>(1, readings.rows().rows().size()));
-}
-
-double price_of(const Effect& effect) {
-  return price_of_a_number * static_cast<double>(effect.numbers.size());
 }
 
 std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const std::vector<Effect>& effects,

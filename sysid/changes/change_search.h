@@ -23,9 +23,6 @@ struct ScoredEffect {
   double tolerance = 0;  ///< limit of `gain` above which the cause counts as a change
 };
 
-/// Returns the penalty for the parameters of an effect, as a sum of whitened squares.
-[[nodiscard]] double price_of(const Effect& effect);
-
 /// Returns price_of() divided by the number of rows of the readings.
 [[nodiscard]] double price_per_row(const LaterReadings& readings, const Effect& effect);
 

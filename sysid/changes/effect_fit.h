@@ -16,6 +16,9 @@ struct EffectFit {
   Eigen::VectorXd white;
 };
 
+/// Returns the penalty for the parameters of an effect, as a sum of whitened squares.
+[[nodiscard]] double price_of(const Effect& effect);
+
 /// Fits the parameters of an effect. The fit is continued from the best start points
 /// (limits::followed_starts), and the best result is returned. The other effects stay constant.
 /// @param without  whitened residual with the other effects only: result of readings.white(others).

@@ -1,7 +1,9 @@
 #include "sysid/changes/healthy_runs.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -40,28 +42,36 @@ TEST_F(HealthyRuns, DelayExceedsTheSpreadOfHealthyRuns) {
   EXPECT_TRUE(spread.is_exceeded(later.plain_rms({}), per_bin(later, later.white({}))));
 }
 
-TEST_F(HealthyRuns, AdmitAChangeIfOneErrorExceedsItsBoundOrBothTheHealthyErrors) {
-  const std::vector<HealthyFits> healthy = units();
-  ASSERT_GE(base_.units.runs(), 2U);
-  const RunSpread spread(healthy, base_.units.runs());
-  std::vector<double> rms, losses;
-  for (const HealthyFits& unit : healthy) {
-    rms.push_back(unit.readings.plain_rms({}));
-    losses.push_back(per_bin(unit.readings, unit.readings.white({})));
+TEST(RunSpreadOfSixRuns, AdmitsAChangeIfOneErrorExceedsItsBoundOrBothTheHealthyErrors) {
+  std::vector<Log> logs;
+  for (const unsigned seed : {1U, 11U, 21U}) {
+    for (Log& log : test::logs_of({}, seed, true)) logs.push_back(std::move(log));
   }
+  const Base base = fit_base(pressure_records(logs, false), Judged::pressure, Drive::command, {});
+  const LaterReadings all = healthy_readings(base);
+  std::vector<HealthyFits> healthy;
+  std::vector<double> rms, losses;
+  for (std::size_t unit = 0; unit < base.units.count(); ++unit) {
+    healthy.push_back({all.only(base.units, unit), {}});
+    rms.push_back(healthy.back().readings.plain_rms({}));
+    losses.push_back(per_bin(healthy.back().readings, healthy.back().readings.white({})));
+  }
+  const std::size_t runs = base.units.runs();
+  ASSERT_GE(runs, 6U);
+  const RunSpread spread(healthy, runs);
   const double worst_rms = *std::max_element(rms.begin(), rms.end());
   const double worst_loss = *std::max_element(losses.begin(), losses.end());
   const double rms_bound = prediction_bound(rms), loss_bound = prediction_bound(losses);
-  ASSERT_FALSE(spread.is_exceeded(1.01 * rms_bound, 1.01 * loss_bound));
+  ASSERT_FALSE(spread.is_exceeded(1.005 * rms_bound, 1.005 * loss_bound));
   ASSERT_GT(rms_bound, 1.01 * worst_rms);
   ASSERT_GT(loss_bound, 1.01 * worst_loss);
-  EXPECT_TRUE(spread.admits_a_change(1.01 * rms_bound, worst_loss));
-  EXPECT_TRUE(spread.admits_a_change(worst_rms, 1.01 * loss_bound));
-  EXPECT_FALSE(spread.admits_a_change(0.99 * rms_bound, worst_loss)) << "only one error is large";
-  EXPECT_FALSE(spread.admits_a_change(worst_rms, 0.99 * loss_bound)) << "only one error is large";
-  EXPECT_TRUE(spread.admits_a_change(1.01 * worst_rms, 1.01 * worst_loss)) << "both errors are large";
+  EXPECT_TRUE(spread.admits_a_change(1.005 * rms_bound, worst_loss));
+  EXPECT_TRUE(spread.admits_a_change(worst_rms, 1.005 * loss_bound));
+  EXPECT_FALSE(spread.admits_a_change(0.995 * rms_bound, worst_loss)) << "only one error is large";
+  EXPECT_FALSE(spread.admits_a_change(worst_rms, 0.995 * loss_bound)) << "only one error is large";
+  EXPECT_TRUE(spread.admits_a_change(1.005 * worst_rms, 1.005 * worst_loss)) << "both errors are large";
   const RunSpread one_run(healthy, 1);
-  EXPECT_FALSE(one_run.admits_a_change(1.01 * rms_bound, 1.01 * loss_bound)) << "the halves of one run";
+  EXPECT_FALSE(one_run.admits_a_change(1.005 * rms_bound, 1.005 * loss_bound)) << "the parts of one run";
 }
 
 TEST(PredictionBound, IsExceededByTwoAndAHalfPercentOfSimilarRuns) {
