@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace softgrip::control {
 
@@ -19,6 +20,12 @@ bool append_ramp(Reference& reference, const Target& target, double value) noexc
   if (target.duration_s > 0) return reference.ramp_for(value, target.duration_s);
   reference.start(reference.end_s(), value);
   return true;
+}
+
+/// Returns the target with another value. The ramp has the same speed or duration.
+Target from(Target target, double value) noexcept {
+  target.value = value;
+  return target;
 }
 
 }  // namespace
@@ -70,6 +77,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
     case StepKind::move:
     case StepKind::grip:
       go_to(step.target, step.target.value, time_s, seen);
+      start_ = from(step.target, start_value_);
       closing_ = step.target.value > start_value_;
       stage_ = Stage::ramp;
       break;
@@ -80,6 +88,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
             step.target.at_rest ? traits_.rest_kpa
                                 : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
             time_s, seen);
+      start_ = from(step.target, start_value_);
       closing_ = false;
       stage_ = Stage::ramp;
       break;
@@ -90,6 +99,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       break;
     case StepKind::track:
       displacement_.forget_before(time_s - kept_s);
+      start_ = {Target::Quantity::displacement_mm, displacement_.value_at(time_s)};
+      start_.speed = 2 * std::numbers::pi * step.sine.frequency_hz * step.sine.amplitude_mm;
       displacement_.cut(time_s + traits_.preview_s);
       displacement_.sine(step.sine.mean_mm, step.sine.amplitude_mm, step.sine.frequency_hz, step.sine.cycles);
       stage_end_s_ = displacement_.end_s();
@@ -98,6 +109,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       break;
     case StepKind::pressure:
       mode_ = Mode::pressure;
+      start_ = {Target::Quantity::pressure_kpa, seen.command_kpa};
       profile_ = closing_ = true;
       profile_start_s_ = time_s;
       pressure_kpa_ = value_at(step.profile, 0);
@@ -135,10 +147,9 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
 }
 
 void ChannelPlayer::back_off(double time_s, const ChannelOutput& seen) noexcept {
-  const double value = start_value_;
   plan_ = nullptr;
-  verified_ = squeezing_ = stopped_by_contact_ = false;
-  go_to(step_->target, value, time_s, seen);
+  verified_ = squeezing_ = stopped_by_contact_ = profile_ = false;
+  go_to(start_, start_.value, time_s, seen);
   deadline_s_ = infinite;
   stage_ = Stage::back;
 }

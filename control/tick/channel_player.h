@@ -134,8 +134,9 @@ class ChannelPlayer {
   double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
   double pressure_kpa_ = 0;
-  double start_value_ = 0;  ///< displacement or pressure at the start of the attempt, in the unit of the
+  double start_value_ = 0;  ///< displacement or pressure at the start of the present ramp, in the unit of the
                             ///< target
+  Target start_;            ///< displacement or pressure at which the step began; back_off() returns to it
   double ramp_end_s_ = 0;
   double stage_end_s_ = 0;
   double deadline_s_ = 0;

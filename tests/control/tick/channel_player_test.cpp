@@ -33,6 +33,10 @@ ChannelOutput short_by(double shortfall_mm) {
   return seen;
 }
 
+double reference_mm(const ChannelDemand& demand) {
+  return demand.reference->value_at(demand.time_s);
+}
+
 /// Returns a player whose finger touches a part and has no grip result yet.
 ChannelPlayer touching(const Step& closing) {
   ChannelPlayer player(traits);
@@ -41,6 +45,44 @@ ChannelPlayer touching(const Step& closing) {
   (void)player.tick(0.01, short_by(2));
   EXPECT_TRUE(player.touching());
   return player;
+}
+
+// Before a failed step is repeated, the channel returns to where the step began, and not to where an earlier
+// step began.
+TEST(ChannelPlayer, BacksOffAProfileToThePressureAtWhichItBegan) {
+  ChannelPlayer player(traits);
+  player.reset();
+  ChannelOutput seen = short_by(0);
+  const Step move = step_of(StepKind::move), profile = step_of(StepKind::pressure);
+  player.begin(move, nullptr, 0, seen);
+  seen.command_kpa = 17;
+  player.begin(profile, nullptr, 5, seen);
+  (void)player.tick(5.25, seen);
+  EXPECT_EQ(player.demand(5.25).pressure_kpa, 21);
+  seen.command_kpa = 21;
+  player.back_off(5.25, seen);
+  for (double time_s = 5.25; time_s < 6; time_s += 0.05) (void)player.tick(time_s, seen);
+  EXPECT_EQ(player.demand(6).mode, ChannelDemand::Mode::pressure);
+  EXPECT_NEAR(player.demand(6).pressure_kpa, 17, 1e-9);
+}
+
+TEST(ChannelPlayer, BacksOffATrackToTheDisplacementAtWhichItBegan) {
+  ChannelPlayer player(traits);
+  player.reset();
+  const ChannelOutput seen = short_by(0);
+  Step move = step_of(StepKind::move);
+  move.target.value = 4;  // the sine begins there
+  const Step track = step_of(StepKind::track);
+  player.begin(move, nullptr, 0, seen);
+  (void)player.tick(5, seen);
+  ASSERT_NEAR(reference_mm(player.demand(5)), 4, 1e-9) << "the target of the move";
+  player.begin(track, nullptr, 5, seen);
+  (void)player.tick(7.5, seen);
+  ASSERT_GT(reference_mm(player.demand(7.5)), 4.5);
+  player.back_off(7.5, seen);
+  for (double time_s = 7.5; time_s < 12; time_s += 0.05) (void)player.tick(time_s, seen);
+  EXPECT_EQ(player.demand(12).mode, ChannelDemand::Mode::displacement);
+  EXPECT_NEAR(reference_mm(player.demand(12)), 4, 1e-9);
 }
 
 TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
