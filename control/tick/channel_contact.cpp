@@ -94,10 +94,8 @@ bool ChannelPlayer::squeezes_on(double time_s, const ChannelOutput& seen) noexce
   const bool by_displacement = step_->target.quantity == Target::Quantity::displacement_mm;
   if (by_displacement && seen.displacement_mm >= step_->target.value) stay_at(pressure_kpa_, time_s);
   if (contact_.touching()) return true;
-  const double began_at = start_value_;
   met_ = squeezing_ = false;
   go_to(step_->target, step_->target.value, time_s, seen);
-  start_value_ = began_at;
   stage_ = Stage::ramp;
   return false;
 }

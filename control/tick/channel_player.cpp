@@ -23,7 +23,7 @@ bool append_ramp(Reference& reference, const Target& target, double value) noexc
 }
 
 /// Returns the target with another value. The ramp has the same speed or duration.
-Target from(Target target, double value) noexcept {
+Target with_value(Target target, double value) noexcept {
   target.value = value;
   return target;
 }
@@ -76,22 +76,21 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
   switch (step.kind) {
     case StepKind::move:
     case StepKind::grip:
-      go_to(step.target, step.target.value, time_s, seen);
-      start_ = from(step.target, start_value_);
-      closing_ = step.target.value > start_value_;
+      start_ = with_value(step.target, go_to(step.target, step.target.value, time_s, seen));
+      closing_ = step.target.value > start_.value;
       stage_ = Stage::ramp;
       break;
-    case StepKind::release:
+    case StepKind::release: {
       // A release step that begins early may start below its target pressure. In this case, the release step
       // must not increase the pressure.
-      go_to(step.target,
-            step.target.at_rest ? traits_.rest_kpa
-                                : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
-            time_s, seen);
-      start_ = from(step.target, start_value_);
+      const double value = step.target.at_rest
+                               ? traits_.rest_kpa
+                               : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa);
+      start_ = with_value(step.target, go_to(step.target, value, time_s, seen));
       closing_ = false;
       stage_ = Stage::ramp;
       break;
+    }
     case StepKind::hold:
       watch_from(time_s, step.reverify_every_s);
       stage_end_s_ = time_s + step.hold_s;
@@ -120,23 +119,25 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
 }
 
 /// Starts the ramp to a target. A displacement ramp starts at the present reference, or at the displacement
-/// of the finger if there is no reference. A pressure ramp starts at the last command.
-void ChannelPlayer::go_to(const Target& target, double value, double time_s,
-                          const ChannelOutput& seen) noexcept {
+/// of the finger if there is no reference. A pressure ramp starts at the last command. Returns the value at
+/// which the ramp starts.
+double ChannelPlayer::go_to(const Target& target, double value, double time_s,
+                            const ChannelOutput& seen) noexcept {
+  double start = 0;
   Reference& reference = target.quantity == Target::Quantity::displacement_mm ? displacement_ : pressure_;
   if (target.quantity == Target::Quantity::pressure_kpa) {
     reference.start(time_s, seen.command_kpa);
-    start_value_ = seen.command_kpa;
+    start = seen.command_kpa;
     mode_ = Mode::pressure;
     pressure_kpa_ = seen.command_kpa;
   } else if (mode_ == Mode::displacement) {
     reference.forget_before(time_s - kept_s);
-    start_value_ = reference.value_at(time_s);
+    start = reference.value_at(time_s);
     reference.cut(time_s + traits_.preview_s);
   } else {
     reference.start(time_s, seen.displacement_mm);
     reference.hold_for(traits_.preview_s);
-    start_value_ = seen.displacement_mm;
+    start = seen.displacement_mm;
     mode_ = Mode::displacement;
   }
   if (!append_ramp(reference, target, value)) {
@@ -144,6 +145,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     append_ramp(reference, target, value);
   }
   ramp_end_s_ = reference.end_s();
+  return start;
 }
 
 void ChannelPlayer::back_off(double time_s, const ChannelOutput& seen) noexcept {

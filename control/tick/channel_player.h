@@ -101,7 +101,7 @@ class ChannelPlayer {
     done,
   };
 
-  void go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
+  double go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
   void feel(const ChannelOutput& seen, bool watched) noexcept;
   bool watch(double time_s, const ChannelOutput& seen) noexcept;
   void look_for_contact(double time_s, const ChannelOutput& seen) noexcept;
@@ -134,9 +134,7 @@ class ChannelPlayer {
   double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
   double pressure_kpa_ = 0;
-  double start_value_ = 0;  ///< displacement or pressure at the start of the present ramp, in the unit of the
-                            ///< target
-  Target start_;            ///< displacement or pressure at which the step began; back_off() returns to it
+  Target start_;  ///< displacement or pressure at which the step began; back_off() returns to it
   double ramp_end_s_ = 0;
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
