@@ -38,6 +38,9 @@ enum class Judged { displacement, pressure };
 /// gain. The difference is smaller with the probability limits::probability. Used if there is only one
 /// healthy run.
 inline constexpr double deviate_between_two_runs = limits::deviate * std::numbers::sqrt2;
+/// Largest difference between the gains of two runs of an unchanged finger with the usual spread, as a share
+/// of the gain (probability limits::probability).
+inline constexpr double usual_gain_difference = deviate_between_two_runs * limits::usual_gain_spread;
 
 /// A model of the healthy finger: a structure with an optional regulator and an optional filter bank.
 struct HealthyModel {

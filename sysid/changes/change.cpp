@@ -85,7 +85,7 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
         "One healthy log does not show how much healthy runs differ from each other. A change is therefore "
         "reported only if its error exceeds three times the error between the two halves of the healthy log. "
         "Before this comparison, a gain difference of up to " +
-        significant(100 * deviate_between_two_runs * limits::usual_gain_spread, 2) +
+        significant(100 * usual_gain_difference, 2) +
         " % is subtracted from the displacement (more if the gains of the two halves differ by more than " +
         significant(100 * limits::usual_gain_spread, 1) +
         " %). "

@@ -67,7 +67,7 @@ std::string unfamiliar_input(double factor) {
 /// Returns true if the gain of the later logs differs from the healthy gain by more than the gains of two
 /// runs of a finger usually differ.
 bool has_unusual_gain(const JudgedChange& judged) {
-  return std::abs(judged.gain_percent) > 100 * deviate_between_two_runs * limits::usual_gain_spread;
+  return std::abs(judged.gain_percent) > 100 * usual_gain_difference;
 }
 
 std::string unusual_gain(double percent) {

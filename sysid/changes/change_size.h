@@ -5,7 +5,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns the mean of a series over the bins in which the drive exceeds 90 % of its largest value.
+/// Returns the mean of a series over the bins in which the magnitude of the drive exceeds 90 % of its largest
+/// value; 0 if there is no such bin.
 [[nodiscard]] double at_full_pressure(const LaterReadings& readings, const Binned& added);
 
 /// Returns the size of an effect.
