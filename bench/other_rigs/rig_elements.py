@@ -48,14 +48,7 @@ def power_law(samples, step_s, constant_s, exponent):
 
 def play(values, radius):
     """Returns the output of a play operator (backlash of the width 2 radius)."""
-    out, state = [], float(values[0])
-    for value in values.tolist():
-        if value - state > radius:
-            state = value - radius
-        elif state - value > radius:
-            state = value + radius
-        out.append(state)
-    return np.array(out)
+    return stiction(values, radius, 0.0)
 
 
 def prandtl_ishlinskii(values, radii, weights):
