@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
 #include "sysid/changes/causes_without_block.h"
+#include "sysid/changes/change_claim.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
 #include "sysid/changes/filter_fit.h"
@@ -43,12 +43,6 @@ double rms_about_mean(const std::vector<double>& series) {
   PairSums sums;
   for (const double v : series) sums.add(v, v);
   return sums.count > 0 ? std::sqrt(std::max(0.0, sums.variance_x())) / sums.count : 0;
-}
-
-void add(PairedLosses& losses, const PairedLosses& more) {
-  losses.worse.insert(losses.worse.end(), more.worse.begin(), more.worse.end());
-  losses.better.insert(losses.better.end(), more.better.begin(), more.better.end());
-  losses.rows.insert(losses.rows.end(), more.rows.begin(), more.rows.end());
 }
 
 std::string other_start(const std::string& record) {
@@ -129,7 +123,8 @@ class Judge {
       if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
                         : !spread_.is_exceeded(rms, judged.loss_left))
         break;
-      const std::optional<ChangeCause> cause = first_change(readings, ranked, white, found, judged);
+      const std::optional<ChangeCause> cause =
+          first_change({readings, found, white, healthy_, options_.seed}, std::move(ranked), judged);
       if (!cause) break;
       diagnosis.causes.push_back(*cause);
       found.push_back(cause->fitted);
@@ -176,86 +171,14 @@ class Judge {
     }
   }
 
-  static std::vector<FittedEffect> with(std::vector<FittedEffect> found, const FittedEffect& one) {
-    found.push_back(one);
-    return found;
-  }
-
-  /// Returns one value per whitened reading: true if the cause must have an effect at the operating point of
-  /// this reading.
-  [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
-    Binned drive, rate;
-    for (std::size_t r = 0; r < readings.records().size(); ++r) {
-      const Record& record = readings.records()[r];
-      const std::size_t bins = readings.left()[r].size();
-      drive.push_back(with_bins(binned(record, record.drive_kpa, base_.bin_s), bins));
-      rate.push_back(with_bins(peak_rate_of(record, base_.bin_s), bins));
-    }
-    std::vector<OperatingPoint> conditions;
-    for (const auto& [r, b, spread] : readings.rows().rows())
-      conditions.push_back({drive[r][b], rate[r][b], readings.plain()[r][b]});
-    return required_at(appears, conditions);
-  }
-
-  /// Returns true if the effect increases the prediction error of left-out later runs. The effect is fitted
-  /// to all runs except one and then predicts this run. A run in which the effect does not occur has no
-  /// influence on the result, because its two errors are equal. For example, a run may not reach the
-  /// saturation of a sensor. The result is false for a free-form effect.
-  [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
-                                    const std::vector<FittedEffect>& found) const {
-    PairedLosses losses;
-    if (effect.free_form) return false;
-    const Units units(readings.records());
-    for (std::size_t unit = 0; unit < units.count(); ++unit) {
-      const LaterReadings rest = readings.without(units, unit), own = readings.only(units, unit);
-      if (rest.records().empty() || own.records().empty()) continue;
-      const EffectFit fit = fit_effect(rest, effect, found, rest.white(found));
-      const std::vector<FittedEffect> all = with(found, fit.fitted);
-      add(losses, losses_of(minus(own.left(), own.added(all)), minus(own.left(), own.added(found)),
-                            Units(own.records()), base_.bin_s));
-    }
-    return is_better(compare(losses, 0, options_.seed));
-  }
-
-  /// Returns the largest possible size of a cause. `unit` is the unit of this size. The limit is the range of
-  /// the signal on which the cause acts.
-  [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
-    double length_s = 0;
-    for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
-    if (unit == "mm") return base_.span_mm;
-    if (unit == "kPa") return base_.largest_kpa;
-    if (unit == "s") return length_s;
-    return std::numeric_limits<double>::infinity();
-  }
-
-  [[nodiscard]] Veto vetoed(const LaterReadings& readings, const ScoredEffect& scored,
-                            const Eigen::VectorXd& without, const std::vector<FittedEffect>& found) const {
-    const FittedEffect& fitted = scored.fit.fitted;
-    const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
-    Claim claim;
-    claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
-                          limits::fewest_occurrences;
-    if (!claim.condition_met) return veto_of(claim);
-    const std::vector<FittedEffect> all = with(found, fitted);
-    claim.size = intervals_of(readings, all, healthy_).back().size;
-    const ChangeSize size = size_of(readings, fitted, at_full_pressure(readings, readings.added({fitted})));
-    claim.largest_size = largest_size(readings, size.unit);
-    claim.error_without = readings.plain_rms(found);
-    claim.error_with = readings.plain_rms(all);
-    claim.predicts_worse = predicts_worse(readings, fitted.effect, found);
-    claim.shown_there =
-        is_better(compare(paired_losses(readings, without, scored.fit.white, &required), 0, options_.seed));
-    return veto_of(claim);
-  }
-
   /// Returns the cause of the effect with the largest error reduction. The effect must meet all conditions of
   /// sysid/evidence/veto.h, and its error reduction must exceed its tolerance. Returns nullopt if no effect
   /// qualifies. Stores the reasons why other effects were rejected.
-  [[nodiscard]] std::optional<ChangeCause> first_change(const LaterReadings& readings,
+  [[nodiscard]] std::optional<ChangeCause> first_change(const CauseSearch& search,
                                                         std::vector<ScoredEffect> ranked,
-                                                        const Eigen::VectorXd& without,
-                                                        const std::vector<FittedEffect>& found,
                                                         JudgedChange& judged) const {
+    const LaterReadings& readings = search.readings;
+    const std::vector<FittedEffect>& found = search.found;
     // The table of tested causes shows the numbers of the first search. If a later search rejects a cause,
     // the reason therefore names the causes that were found before this search.
     std::string given;
@@ -272,7 +195,7 @@ class Judge {
                       : "the probability that a further error reduction exceeds the tolerance is below 95 %";
     std::erase_if(ranked, [&](const ScoredEffect& each) {
       const Comparison against_none =
-          compare(paired_losses(readings, without, each.fit.white),
+          compare(paired_losses(readings, search.without, each.fit.white),
                   each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
       if (is_better(against_none)) return false;
       reject(each, not_larger);
@@ -281,8 +204,8 @@ class Judge {
     const Ties ties = ties_in(readings, options_.seed);
     for (; !ranked.empty(); ranked.erase(ranked.begin())) {
       put_fewest_numbers_first(ranked, ties);
-      const Veto veto = vetoed(readings, ranked.front(), without, found);
-      if (veto == Veto::none) return cause_of(readings, ranked, ties, without, found);
+      const Veto veto = vetoed(search, ranked.front());
+      if (veto == Veto::none) return cause_of(search, ranked, ties);
       reject(ranked.front(), reason_of(veto));
     }
     return std::nullopt;
@@ -297,9 +220,9 @@ class Judge {
            t_quantile(units - 1) * base_.zero_spread_mm * std::sqrt(1 + 1 / units);
   }
 
-  [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,
-                                     const Ties& ties, const Eigen::VectorXd& without,
-                                     const std::vector<FittedEffect>& found) const {
+  [[nodiscard]] ChangeCause cause_of(const CauseSearch& search, const std::vector<ScoredEffect>& ranked,
+                                     const Ties& ties) const {
+    const LaterReadings& readings = search.readings;
     const FittedEffect& best = ranked.front().fit.fitted;
     const Binned added = readings.added({best});
     ChangeCause cause;
@@ -310,22 +233,22 @@ class Judge {
     cause.fitted = best;
     cause.gain = ranked.front().gain;
     const Comparison spread =
-        compare(paired_losses(readings, without, ranked.front().fit.white), 0, options_.seed);
+        compare(paired_losses(readings, search.without, ranked.front().fit.white), 0, options_.seed);
     cause.gain_lower = spread.lower;
     cause.gain_upper = spread.upper;
     for (std::size_t i = 1; i < ranked.size(); ++i) {
-      if (ties(ranked.front(), ranked[i]) && vetoed(readings, ranked[i], without, found) == Veto::none)
+      if (ties(ranked.front(), ranked[i]) && vetoed(search, ranked[i]) == Veto::none)
         cause.alternatives.push_back(ranked[i].fit.fitted.effect.id);
     }
     if ((cause.id == causes::Ageing::WithTime::id ||
          std::count(cause.alternatives.begin(), cause.alternatives.end(), causes::Ageing::WithTime::id) >
              0) &&
-        is_another_zero(readings.nuisance(with(found, best)).zero_mm))
+        is_another_zero(readings.nuisance(search.with(best)).zero_mm))
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
     cause.size = size_of(readings, best, cause.full_pressure_mm);
-    const double excess = per_bin(readings, without) - 1;
+    const double excess = per_bin(readings, search.without) - 1;
     cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
     return cause;
   }

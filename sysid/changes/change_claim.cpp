@@ -1,0 +1,99 @@
+#include "sysid/changes/change_claim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "base/statistics.h"
+#include "sysid/changes/bins.h"
+#include "sysid/changes/change_size.h"
+#include "sysid/changes/filter_fit.h"
+#include "sysid/evidence/units.h"
+#include "sysid/limits/limits.h"
+
+namespace softgrip::sysid {
+namespace {
+
+void add(PairedLosses& losses, const PairedLosses& more) {
+  losses.worse.insert(losses.worse.end(), more.worse.begin(), more.worse.end());
+  losses.better.insert(losses.better.end(), more.better.begin(), more.better.end());
+  losses.rows.insert(losses.rows.end(), more.rows.begin(), more.rows.end());
+}
+
+/// Returns true if the effect increases the prediction error of left-out later runs. The effect is fitted to
+/// all runs except one and then predicts this run. A run in which the effect does not occur has no influence
+/// on the result, because its two errors are equal. For example, a run may not reach the saturation of a
+/// sensor. The result is false for a free-form effect.
+bool predicts_worse(const CauseSearch& search, const Effect& effect) {
+  PairedLosses losses;
+  if (effect.free_form) return false;
+  const LaterReadings& readings = search.readings;
+  const Units units(readings.records());
+  for (std::size_t unit = 0; unit < units.count(); ++unit) {
+    const LaterReadings rest = readings.without(units, unit), own = readings.only(units, unit);
+    if (rest.records().empty() || own.records().empty()) continue;
+    const EffectFit fit = fit_effect(rest, effect, search.found, rest.white(search.found));
+    add(losses,
+        losses_of(minus(own.left(), own.added(search.with(fit.fitted))),
+                  minus(own.left(), own.added(search.found)), Units(own.records()), readings.base().bin_s));
+  }
+  return is_better(compare(losses, 0, search.seed));
+}
+
+/// Returns the largest possible size of a cause. `unit` is the unit of this size. The limit is the range of
+/// the signal on which the cause acts.
+double largest_size(const LaterReadings& readings, const std::string& unit) {
+  double length_s = 0;
+  for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
+  if (unit == "mm") return readings.base().span_mm;
+  if (unit == "kPa") return readings.base().largest_kpa;
+  if (unit == "s") return length_s;
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::vector<FittedEffect> CauseSearch::with(const FittedEffect& one) const {
+  std::vector<FittedEffect> all = found;
+  all.push_back(one);
+  return all;
+}
+
+std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) {
+  const double bin_s = readings.base().bin_s;
+  Binned drive, rate;
+  for (std::size_t r = 0; r < readings.records().size(); ++r) {
+    const Record& record = readings.records()[r];
+    const std::size_t bins = readings.left()[r].size();
+    drive.push_back(with_bins(binned(record, record.drive_kpa, bin_s), bins));
+    rate.push_back(with_bins(peak_rate_of(record, bin_s), bins));
+  }
+  std::vector<OperatingPoint> conditions;
+  for (const auto& [r, b, spread] : readings.rows().rows())
+    conditions.push_back({drive[r][b], rate[r][b], readings.plain()[r][b]});
+  return required_at(appears, conditions);
+}
+
+Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
+  const LaterReadings& readings = search.readings;
+  const FittedEffect& fitted = scored.fit.fitted;
+  const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
+  Claim claim;
+  claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
+                        limits::fewest_occurrences;
+  if (!claim.condition_met) return veto_of(claim);
+  const std::vector<FittedEffect> all = search.with(fitted);
+  claim.size = intervals_of(readings, all, search.healthy).back().size;
+  const ChangeSize size = size_of(readings, fitted, at_full_pressure(readings, readings.added({fitted})));
+  claim.largest_size = largest_size(readings, size.unit);
+  claim.error_without = readings.plain_rms(search.found);
+  claim.error_with = readings.plain_rms(all);
+  claim.predicts_worse = predicts_worse(search, fitted.effect);
+  claim.shown_there = is_better(
+      compare(paired_losses(readings, search.without, scored.fit.white, &required), 0, search.seed));
+  return veto_of(claim);
+}
+
+}  // namespace softgrip::sysid
