@@ -15,6 +15,7 @@
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
+#include "sysid/structure/linear_modes.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_fit.h"
 #include "sysid/structure/structure_model.h"
@@ -86,14 +87,28 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-/// Returns the candidate that consists of play operators and creep. Its input is the drive of the records
-/// that it is fitted to.
-Candidate play_candidate(Drive drive) {
-  const BaseStructure play{
-      .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
-  return {description_of(play), {}, [play, drive](const std::vector<Record>& driven) {
-            return point_of(fit_form(driven, play, grid_for(driven), {}), driven, drive);
+BaseStructure play_structure(Drive drive) {
+  return {.hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
+}
+
+/// Returns the candidate with this structure. Its input is the drive of the records that it is fitted to.
+Candidate candidate_of(const BaseStructure& structure, Drive drive) {
+  return {description_of(structure), {}, [structure, drive](const std::vector<Record>& driven) {
+            return point_of(fit_form(driven, structure, grid_for(driven), {}), driven, drive);
           }};
+}
+
+/// Returns true if the start point of a linear mode already reduces the mean square error of play operators
+/// and creep by more than 10 %. A complete fit of the mode is then worth its time.
+bool may_have_a_mode(const std::vector<Record>& records, Drive drive) {
+  const StructureFitOptions options;
+  const std::vector<Record> few = with_fewer_readings(records, options.most_rows);
+  const StructureGrid grid = grid_for(few);
+  const FittedStructure still = fit_form(few, play_structure(drive), grid, options);
+  BaseStructure moving = still.structure;
+  moving.modes = 1;
+  return starts_of_next_mode(few, moving, grid, still.numbers, options).front().mean_square_mm2 <
+         (1 - limits::equal_error_share) * still.mean_square_mm2;
 }
 
 std::vector<Candidate> candidates(const std::vector<Record>& records, const Base& base,
@@ -103,7 +118,7 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
     return {{"filter bank", {}, nothing},
             {"a regulator", fit_regulator(records, base.largest_kpa, ReadBy::gauge), nothing}};
   const bool command = base.drive == Drive::command;
-  const Candidate play = play_candidate(base.drive);
+  const Candidate play = candidate_of(play_structure(base.drive), base.drive);
   std::vector<Candidate> all{
       play,
       {"Bouc-Wen and two creep branches",
@@ -114,6 +129,11 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
   if (command) {
     const Regulator regulator = fit_regulator(records, base.largest_kpa);
     all.push_back({"a regulator, " + play.description, regulator, play.fit});
+  }
+  if (may_have_a_mode(records, base.drive)) {
+    BaseStructure moving = play_structure(base.drive);
+    moving.modes = 1;
+    all.push_back(candidate_of(moving, base.drive));
   }
   if (options.given) {
     const model::Model model = deterministic_part(*options.given, base.drive);
@@ -261,7 +281,7 @@ double finger_bin_s(const std::vector<Record>& records) {
 
 Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s, unsigned threads) {
   const Units units(records);
-  const Candidate play = play_candidate(drive);
+  const Candidate play = candidate_of(play_structure(drive), drive);
   std::vector<Binned> fitted_without(units.count());
   parallel_for(units.count(), threads, [&](std::size_t unit) {
     model::Model model;

@@ -11,6 +11,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/identify.h"
+#include "sysid/limits/limits.h"
 #include "sysid/structure/bounded_answer.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/resonance.h"
@@ -148,23 +149,27 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
 
 /// Adds linear modes to a structure, one after the other, while the held-out loss becomes significantly
 /// lower. Offers each extended structure.
-/// @param form  trial of the structure without modes; only its structure and its parameters are used. A
-/// second mode is tried even if the first one alone does not lower the loss.
+/// @param form  trial of the structure without modes. If it has other dynamics, each mode must reduce the
+/// held-out error by at least 10 %, because modes can imitate small errors of the other components. A linear
+/// structure without modes has no dynamics, so a second mode is tried even if the first one alone does not
+/// lower the loss.
 void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoice& choice) {
   for (std::size_t modes = 1; modes <= most_modes; ++modes) {
     BaseStructure structure = form.structure;
     structure.modes = modes;
     StructureTrial extended = judge.judge_near(structure, choice.ridge, form.numbers);
-    const bool enough = modes > 1 && !is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2);
-    offer(extended, choice);
-    if (enough) return;
+    const bool alone = form.structure.linear;
+    const bool is_lower =
+        is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2) &&
+        (alone || extended.heldout_rmse_mm < (1 - limits::equal_error_share) * form.heldout_rmse_mm);
+    if (alone || is_lower) offer(extended, choice);
+    if (!is_lower && !(alone && modes == 1)) return;
     form = std::move(extended);
   }
 }
 
-/// Tries linear modes in two forms: alone, and in parallel with the chosen structure. The second form takes
-/// longer. It is tried only if the modes alone were chosen or if a fast test shows that linear dynamics are
-/// missing. Neither form is tried if the error of the chosen structure is noise.
+/// Tries linear modes in two forms: alone, and in parallel with the chosen structure. Neither form is tried
+/// if the error of the chosen structure is noise.
 void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOptions& options,
                         StructureChoice& choice) {
   const std::vector<StructureTrial>& trials = choice.trials;
@@ -174,9 +179,6 @@ void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOption
   if (still.structure.published)
     still = *std::find_if(trials.begin(), trials.end(),
                           [](const StructureTrial& t) { return !t.structure.published; });
-  still.structure.resonance = false;
-  const bool lacks_modes = judge.lacks_linear_dynamics(trials[choice.chosen]);
-  const std::size_t count = trials.size();
   StructureTrial alone = still;
   alone.structure = {.hysteretic = false,
                      .delay = still.structure.delay,
@@ -185,7 +187,8 @@ void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOption
                      .characteristic = false,
                      .linear = true};
   offer_modes(judge, std::move(alone), choice);
-  if (lacks_modes || trials.size() > count) offer_modes(judge, std::move(still), choice);
+  still.structure.resonance = false;
+  offer_modes(judge, std::move(still), choice);
 }
 
 /// Fits the structure of a trial.

@@ -354,7 +354,9 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
     const bool is_next = modes == simpler.modes;
     const NonlinearNumbers fewer =
         is_next ? starts.front() : fit_form(records, simpler, grid, options, near).numbers;
-    starts = starts_of_next_mode(few, structure, grid, fewer, options);
+    starts.clear();
+    for (StartOfMode& start : starts_of_next_mode(few, structure, grid, fewer, options))
+      starts.push_back(std::move(start.numbers));
   }
   std::vector<Descent<Search::State>> runs(starts.size());
   parallel_for_idle(starts.size(), [&](std::size_t i) {

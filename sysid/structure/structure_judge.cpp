@@ -8,7 +8,6 @@
 #include "sysid/identification/combinations.h"
 #include "sysid/limits/limits.h"
 #include "sysid/structure/bounded_answer.h"
-#include "sysid/structure/linear_modes.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_model.h"
 
@@ -87,10 +86,6 @@ bool StructureJudge::is_noise(const StructureTrial& trial) const {
   double noise_mm = std::numeric_limits<double>::infinity();
   for (const Record& record : records_) noise_mm = std::min(noise_mm, fast_noise_mm(record));
   return trial.heldout_rmse_mm <= (1 + limits::equal_error_share) * noise_mm;
-}
-
-bool StructureJudge::lacks_linear_dynamics(const StructureTrial& trial) const {
-  return sysid::lacks_linear_dynamics(trial.point, records_, grid_, division_, trial.block_losses_mm2);
 }
 
 StructureTrial StructureJudge::judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const {

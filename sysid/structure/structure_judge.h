@@ -48,8 +48,6 @@ class StructureJudge {
   /// Returns true if the held-out error of a trial is at most 1.1 times the noise of the readings (the lowest
   /// noise of all records). No further component can then reduce this error significantly.
   [[nodiscard]] bool is_noise(const StructureTrial& trial) const;
-  /// Returns the result of lacks_linear_dynamics() for a trial.
-  [[nodiscard]] bool lacks_linear_dynamics(const StructureTrial& trial) const;
   /// Evaluates a trial after a resonance is added to it. The member `numbers` of the result keeps the values
   /// from the fit without the resonance.
   [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const;
