@@ -121,7 +121,7 @@ StartState start_of(const model::Model& model, const Record& record) {
 }
 
 Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve,
-                 const RegulatorFault& fault, const StartState* start) {
+                 const RegulatorFault& fault, const Load& load, const StartState* start) {
   Driven driven{record, {}, base.model, {}, {}, {}};
   if (base.regulator || !valve.empty()) {
     driven.record.drive_kpa = drive_of(base, record, valve, fault);
@@ -132,6 +132,11 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
   const auto whole = whole_is_simulated ? with_valve(base.model, valve) : std::nullopt;
   if (whole) driven.model = *whole;
   driven.simulated = whole ? record : driven.record;
+  if (load != Load{}) {
+    for (Record* const each : {&driven.record, &driven.simulated}) {
+      for (double& p : each->drive_kpa) p = load.factor * p - load.weight_kpa;
+    }
+  }
   driven.filters = base.filter_weights.size() == 0
                        ? Eigen::VectorXd(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size())))
                        : weighted_filters(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa,
@@ -143,10 +148,12 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
 
 std::vector<double> predict_base(const Base& base, const Record& record, const Extension& extension,
                                  const Driven* driven) {
-  if (driven != nullptr && extension.valve.empty() && extension.fault == RegulatorFault{})
+  if (driven != nullptr && extension.valve.empty() && extension.fault == RegulatorFault{} &&
+      extension.load == Load{})
     return driven_prediction(base, *driven, extension);
   const StartState* const start = driven != nullptr ? &driven->start : nullptr;
-  return driven_prediction(base, driven_by(base, record, extension.valve, extension.fault, start), extension);
+  return driven_prediction(
+      base, driven_by(base, record, extension.valve, extension.fault, extension.load, start), extension);
 }
 
 std::vector<std::vector<double>> residuals_of(const Base& base, const std::vector<Record>& records) {

@@ -41,11 +41,13 @@ struct Driven {
 /// Simulates the valve of the baseline model.
 /// @param valve  additional blocks between the command and the baseline model.
 /// @param fault  faults of the regulator of the baseline model.
+/// @param load  load line of the finger.
 /// @param start  initial state of the model; nullptr: the initial state is estimated from the first readings
 /// of the record.
 [[nodiscard]] Driven driven_by(const Base& base, const Record& record,
                                const std::vector<model::BlockSpec>& valve = {},
-                               const RegulatorFault& fault = {}, const StartState* start = nullptr);
+                               const RegulatorFault& fault = {}, const Load& load = {},
+                               const StartState* start = nullptr);
 
 /// Returns the prediction of the baseline model with the effects of `extension`. The prediction contains no
 /// zero offset.

@@ -69,6 +69,7 @@ class Collector {
       add_causes_of_the_air();
     } else {
       add_gain();
+      add_load();
       add_softening();
       add_crescent();
       add_stiffening();
@@ -157,6 +158,26 @@ class Collector {
     effect.nothing = {0};
     effect.apply = [](Extension& e, const std::vector<double>& n) { e.gain *= 1 + n[0]; };
     effects_.push_back(std::move(effect));
+  }
+  /// Adds a different modulus of the material, and a weight. Both change the load line of the finger. For a
+  /// finger with a nonlinear characteristic, they differ from a gain of the sensor and from a zero offset.
+  void add_load() {
+    const double p = base_.largest_kpa;
+    Effect softer = form_of(cause_with<model::Ageing>(), "another_modulus");
+    softer.numbers = {{"pressure_factor_change", "", 0.01, -0.9, 9}};
+    softer.starts = {{0.02}, {-0.02}};
+    softer.nothing = {0};
+    softer.apply = [](Extension& e, const std::vector<double>& n) { e.load.factor *= 1 + n[0]; };
+    effects_.push_back(std::move(softer));
+    Effect weight = form_of(payload);
+    weight.station = model::Station::load;
+    weight.form = "weight";
+    weight.size = SizedBy{SizedBy::Of::number, "pressure that balances the load", "kPa", "weight_kpa"};
+    weight.numbers = {{"weight_kpa", "kPa", 0.5, -0.5 * p, 0.5 * p}};
+    weight.starts = {{0.03 * p}, {-0.03 * p}};
+    weight.nothing = {0};
+    weight.apply = [](Extension& e, const std::vector<double>& n) { e.load.weight_kpa += n[0]; };
+    effects_.push_back(std::move(weight));
   }
   void add_softening() {
     const double p = base_.largest_kpa;

@@ -51,9 +51,20 @@ struct RegulatorFault {
   [[nodiscard]] bool operator==(const RegulatorFault&) const = default;
 };
 
+/// A different load line of the finger: the model of the finger receives factor * p - weight_kpa instead of
+/// the pressure p. The displacement x of a finger obeys an equilibrium of the form
+/// stiffness f(x) = area p - weight, so a stiffness that changes by 1/factor and a weight change only the
+/// pressure. If f is linear, the factor is a gain, and the weight is a zero offset.
+struct Load {
+  double factor = 1;
+  double weight_kpa = 0;
+  [[nodiscard]] bool operator==(const Load&) const = default;
+};
+
 struct Extension {
   std::vector<model::BlockSpec> valve;  ///< blocks between the command and the baseline model
   RegulatorFault fault;                 ///< faults of the regulator, if the baseline model has one
+  Load load;                            ///< change of the load line of the finger
   std::vector<model::BlockSpec> chain;  ///< blocks within the model of the finger or after it
   double gain = 1;                      ///< factor that multiplies the displacement
   /// Relative change of the gain per degree above the mean temperature of the healthy logs.

@@ -30,6 +30,31 @@ TEST(BasePrediction, HalfSampleDelayEqualsMeanOfAdjacentDriveSamples) {
   for (std::size_t i = 1; i < p.size(); ++i) ASSERT_NEAR(p[i], expected[i], 1e-6) << i;
 }
 
+TEST(BasePrediction, LoadLineIsAMapOfTheDrive) {
+  for (const Drive drive : {Drive::command, Drive::measured}) {
+    const std::vector<Record> records = make_records(test::logs_of({}, 1, true), {.drive = drive});
+    Base base = fit_base(records, Judged::displacement, drive, {});
+    const Record& record = base.records.front();
+    const auto columns = filter_columns(record, record.drive_kpa, base.kind, base.largest_kpa).cols();
+    base.filter_weights = Eigen::VectorXd::Constant(columns, 2e-4);
+    Record mapped = record;
+    for (double& p : mapped.drive_kpa) p = 1.2 * p - 3;
+    const Driven driven = driven_by(base, record);
+    Extension loaded;
+    loaded.load = {1.2, 3};
+    const std::vector<double> p = predict_base(base, record, loaded, &driven);
+    const Driven expected_drive = driven_by(base, mapped, {}, {}, {}, &driven.start);
+    const std::vector<double> expected = predict_base(base, mapped, {}, &expected_drive);
+    ASSERT_EQ(p.size(), expected.size());
+    double largest_mm = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      ASSERT_NEAR(p[i], expected[i], 1e-9) << i;
+      largest_mm = std::max(largest_mm, std::abs(p[i] - driven.plain[i]));
+    }
+    EXPECT_GT(largest_mm, 0.5);
+  }
+}
+
 /// Returns a baseline model whose filter bank contributes a large part of the prediction.
 Base with_a_large_filter_part() {
   Base base = fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});

@@ -28,6 +28,7 @@ struct Finger {
                            ///< mm stays unchanged
   double crescent_mm = 0;  ///< largest width of a hysteresis loop [mm]; loading follows a parabola and
                            ///< unloading follows a line
+  double weight_kpa = 0;   ///< pressure that balances a weight on the finger [kPa]
   double drift_mm = 0;     ///< amplitude of a drift of the zero offset [mm] with a period of about 15 s
 };
 
@@ -79,11 +80,12 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
     lost = u == before ? std::min(lost + finger.lost_kpa_per_s / rate_hz * u / 60, 1.5) : 0.8 * lost;
     const double p = behind = lagged_kpa(behind, wanted, u - lost, 1 / rate_hz, finger.valve_lag_s);
     wanted = u - lost;
-    play = std::clamp(play, p - 3, p + 3);
-    creep += (p - creep) / (rate_hz * 4);
+    const double q = p - finger.weight_kpa;
+    play = std::clamp(play, q - 3, q + 3);
+    creep += (q - creep) / (rate_hz * 4);
     const double t = static_cast<double>(i) / rate_hz;
     const double temperature_c = 24 + 3 * std::sin(t / 8 + phase);
-    double y = finger.gain * (1 + finger.per_c * (temperature_c - 15)) * (0.6 * p + 0.3 * play + 0.1 * creep);
+    double y = finger.gain * (1 + finger.per_c * (temperature_c - 15)) * (0.6 * q + 0.3 * play + 0.1 * creep);
     const double part = std::max(p, 0.0) / 58;
     between = std::clamp(between, part * part, part);
     y += 4 * finger.crescent_mm * (between - 0.5 * (part + part * part));
