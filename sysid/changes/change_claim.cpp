@@ -53,6 +53,55 @@ double largest_size(const LaterReadings& readings, const std::string& unit) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// Returns the residuals with these effects at each whitened row, without whitening. The mean of each record
+/// is subtracted.
+Eigen::VectorXd residuals_with(const LaterReadings& readings, const std::vector<FittedEffect>& effects) {
+  const Binned left = minus(readings.left(), readings.added(effects));
+  std::vector<double> sums(left.size()), counts(left.size());
+  const std::vector<WhiteRows::Row>& rows = readings.rows().rows();
+  for (const auto& [r, b, spread] : rows) {
+    sums[r] += left[r][b];
+    counts[r] += 1;
+  }
+  Eigen::VectorXd residuals(static_cast<Eigen::Index>(rows.size()));
+  Eigen::Index next = 0;
+  for (const auto& [r, b, spread] : rows) residuals(next++) = left[r][b] - sums[r] / counts[r];
+  return residuals;
+}
+
+/// Returns true if the effect changes the required rows by more than the penalty for its parameters. A
+/// smaller effect can neither be confirmed nor be refuted there. For example, the only rest may be at the
+/// start of the log, where a drift has not begun.
+bool is_visible(const CauseSearch& search, const ScoredEffect& scored, const std::vector<bool>& required) {
+  double sum = 0;
+  for (std::size_t i = 0; i < required.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (required[i]) sum += square(scored.fit.white(row) - search.without(row));
+  }
+  return sum > price_of(scored.fit.fitted.effect);
+}
+
+/// Returns true if the effect reduces the error at the required rows, with or without whitening. Whitening
+/// removes slow errors, so that the rows of a short rest do not show a slow drift.
+bool is_shown(const CauseSearch& search, const ScoredEffect& scored, const std::vector<bool>& required) {
+  const auto reduces = [&](const Eigen::VectorXd& worse, const Eigen::VectorXd& better) {
+    return is_better(compare(paired_losses(search.readings, worse, better, &required), 0, search.seed));
+  };
+  return reduces(search.without, scored.fit.white) ||
+         reduces(residuals_with(search.readings, search.found),
+                 residuals_with(search.readings, search.with(scored.fit.fitted)));
+}
+
+/// Returns true if an effect with more parameters has the same influence on the readings as the best effect,
+/// because the best effect is a special case of it. For example, a contact near the rest position is a
+/// smaller gain.
+bool only_imitates(const CauseSearch& search, const ScoredEffect& best, const ScoredEffect& other) {
+  const auto numbers = [](const ScoredEffect& scored) { return scored.fit.fitted.effect.numbers.size(); };
+  return numbers(other) > numbers(best) && other.gain <= best.gain &&
+         (other.fit.white - best.fit.white).squaredNorm() <
+             limits::form_error_share * (best.fit.white - search.without).squaredNorm();
+}
+
 }  // namespace
 
 std::vector<FittedEffect> CauseSearch::with(const FittedEffect& one) const {
@@ -82,7 +131,8 @@ Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
   const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
   Claim claim;
   claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
-                        limits::fewest_occurrences;
+                            limits::fewest_occurrences &&
+                        is_visible(search, scored, required);
   if (!claim.condition_met) return veto_of(claim);
   const std::vector<FittedEffect> all = search.with(fitted);
   claim.size = intervals_of(readings, all, search.healthy).back().size;
@@ -91,9 +141,17 @@ Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
   claim.error_without = readings.plain_rms(search.found);
   claim.error_with = readings.plain_rms(all);
   claim.predicts_worse = predicts_worse(search, fitted.effect);
-  claim.shown_there = is_better(
-      compare(paired_losses(readings, search.without, scored.fit.white, &required), 0, search.seed));
+  claim.shown_there = is_shown(search, scored, required);
   return veto_of(claim);
+}
+
+bool is_alternative(const CauseSearch& search, const ScoredEffect& best, const ScoredEffect& other,
+                    const Ties& ties) {
+  if (other.fit.fitted.effect.id == best.fit.fitted.effect.indistinguishable) return true;
+  if (other.gain < limits::majority_share * best.gain || only_imitates(search, best, other)) return false;
+  return ties(best, other) || other.gain >= (1 - limits::equal_error_share) * best.gain ||
+         !search.spread.admits_a_change(search.readings.plain_rms(search.with(other.fit.fitted)),
+                                        per_bin(search.readings, other.fit.white));
 }
 
 }  // namespace softgrip::sysid

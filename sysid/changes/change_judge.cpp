@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
 #include "sysid/changes/causes_without_block.h"
@@ -124,7 +125,7 @@ class Judge {
                         : !spread_.is_exceeded(rms, judged.loss_left))
         break;
       const std::optional<ChangeCause> cause =
-          first_change({readings, found, white, healthy_, options_.seed}, std::move(ranked), judged);
+          first_change({readings, found, white, healthy_, spread_, options_.seed}, std::move(ranked), judged);
       if (!cause) break;
       diagnosis.causes.push_back(*cause);
       found.push_back(cause->fitted);
@@ -193,6 +194,7 @@ class Judge {
     const std::string_view not_larger =
         found.empty() ? "the probability that the error reduction exceeds the tolerance is below 95 %"
                       : "the probability that a further error reduction exceeds the tolerance is below 95 %";
+    const std::vector<ScoredEffect> all = ranked;
     std::erase_if(ranked, [&](const ScoredEffect& each) {
       const Comparison against_none =
           compare(paired_losses(readings, search.without, each.fit.white),
@@ -205,7 +207,7 @@ class Judge {
     for (; !ranked.empty(); ranked.erase(ranked.begin())) {
       put_fewest_numbers_first(ranked, ties);
       const Veto veto = vetoed(search, ranked.front());
-      if (veto == Veto::none) return cause_of(search, ranked, ties);
+      if (veto == Veto::none) return cause_of(search, ranked.front(), all, ties, judged);
       reject(ranked.front(), reason_of(veto));
     }
     return std::nullopt;
@@ -220,10 +222,14 @@ class Judge {
            t_quantile(units - 1) * base_.zero_spread_mm * std::sqrt(1 + 1 / units);
   }
 
-  [[nodiscard]] ChangeCause cause_of(const CauseSearch& search, const std::vector<ScoredEffect>& ranked,
-                                     const Ties& ties) const {
+  /// @param all  all effects, sorted by their error reductions. An alternative need not exceed its tolerance,
+  /// because the change has already been detected. If the logs lack the situation in which an alternative
+  /// must act, they cannot exclude it.
+  [[nodiscard]] ChangeCause cause_of(const CauseSearch& search, const ScoredEffect& scored,
+                                     const std::vector<ScoredEffect>& all, const Ties& ties,
+                                     JudgedChange& judged) const {
     const LaterReadings& readings = search.readings;
-    const FittedEffect& best = ranked.front().fit.fitted;
+    const FittedEffect& best = scored.fit.fitted;
     const Binned added = readings.added({best});
     ChangeCause cause;
     cause.id = best.effect.id;
@@ -231,18 +237,28 @@ class Judge {
     cause.station = best.effect.station;
     cause.judged = base_.judged;
     cause.fitted = best;
-    cause.gain = ranked.front().gain;
+    cause.gain = scored.gain;
     const Comparison spread =
-        compare(paired_losses(readings, search.without, ranked.front().fit.white), 0, options_.seed);
+        compare(paired_losses(readings, search.without, scored.fit.white), 0, options_.seed);
     cause.gain_lower = spread.lower;
     cause.gain_upper = spread.upper;
-    for (std::size_t i = 1; i < ranked.size(); ++i) {
-      if (ties(ranked.front(), ranked[i]) && vetoed(search, ranked[i]) == Veto::none)
-        cause.alternatives.push_back(ranked[i].fit.fitted.effect.id);
+    std::vector<const ScoredEffect*> others;
+    for (const ScoredEffect& other : all) {
+      if (other.fit.fitted.effect.id != cause.id && is_alternative(search, scored, other, ties))
+        others.push_back(&other);
+    }
+    std::vector<Veto> vetoes(others.size());
+    parallel_for(others.size(), options_.threads,
+                 [&](std::size_t i) { vetoes[i] = vetoed(search, *others[i]); });
+    for (std::size_t i = 0; i < others.size() && cause.alternatives.size() < limits::most_alternatives; ++i) {
+      const Effect& effect = others[i]->fit.fitted.effect;
+      if (vetoes[i] == Veto::not_tested) judged.not_tested.emplace(effect.id, recording_for(effect.appears));
+      if (vetoes[i] == Veto::none || vetoes[i] == Veto::not_tested) cause.alternatives.push_back(effect.id);
     }
     if ((cause.id == causes::Ageing::WithTime::id ||
          std::count(cause.alternatives.begin(), cause.alternatives.end(), causes::Ageing::WithTime::id) >
              0) &&
+        std::count(cause.alternatives.begin(), cause.alternatives.end(), payload.id) == 0 &&
         is_another_zero(readings.nuisance(search.with(best)).zero_mm))
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);

@@ -29,7 +29,7 @@ void print_cause(const sysid::ChangeCause& cause) {
               interval_text(cause).c_str(), significant(cause.full_pressure_mm, 3).c_str(),
               unit_of(cause.judged, cause.output_unit).c_str());
   for (const std::string& alternative : cause.alternatives)
-    std::printf("      alternative cause: %s explains the data equally well\n", alternative.c_str());
+    std::printf("      alternative cause: %s explains the change too\n", alternative.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
 }

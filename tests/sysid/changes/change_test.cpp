@@ -295,8 +295,9 @@ std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, do
 
 ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s) {
   // Each log must last at least one minute, because the diagnosis does not find a small leak in shorter logs.
+  // The commands of the later logs are not farther from the pressure than those of the healthy logs.
   const auto d = diagnose_change(behind_a_regulator(logs_of({}, 1, true, 3000), 40, 0),
-                                 behind_a_regulator(logs_of({}, 5, true, 3000), tube_per_s, leak_per_s));
+                                 behind_a_regulator(logs_of({}, 3, true, 3000), tube_per_s, leak_per_s));
   EXPECT_TRUE(d) << d.error();
   return *d;
 }
@@ -457,7 +458,8 @@ TEST(Change, DifferentStartStateNeedsALargerError) {
     return *d;
   };
   const ChangeDiagnosis alike = diagnosis_of(at_rest), other = diagnosis_of(under_pressure);
-  EXPECT_EQ(alike.verdict, ChangeVerdict::cause_found) << change_sentence(alike);
+  ASSERT_EQ(alike.causes.size(), 1U) << change_sentence(alike);
+  EXPECT_EQ(alike.causes[0].id, "valve_lag");
   EXPECT_EQ(other.verdict, ChangeVerdict::unchanged) << change_sentence(other);
   EXPECT_TRUE(std::any_of(other.warnings.begin(), other.warnings.end(), [](const std::string& warning) {
     return warning.find("No healthy log begins in the same state (pressurised or vented) as") == 0;

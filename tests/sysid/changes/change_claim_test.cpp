@@ -1,0 +1,131 @@
+#include "sysid/changes/change_claim.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tests/sysid/changes/pressure_base.h"
+
+namespace softgrip::sysid::change_claim_test {
+namespace {
+
+class ChangeClaim : public test::PressureBase {
+ protected:
+  /// Returns the effect of this cause with the largest error reduction.
+  [[nodiscard]] static ScoredEffect scored(const LaterReadings& later, const std::string& id) {
+    std::vector<Effect> effects = effects_for(later.base(), later.records(), {}, true);
+    std::erase_if(effects, [&](const Effect& effect) { return effect.id != id; });
+    return ranked_effects(later, effects, {}, {}, 1).front();
+  }
+  [[nodiscard]] static bool never(const ScoredEffect&, const ScoredEffect&) { return false; }
+};
+
+/// The numbers of alternatives depend on the gains only, because the bounds of the spread are 0.
+TEST_F(ChangeClaim, AlternativesReduceTheErrorNearlyAsMuch) {
+  const LaterReadings later = readings({.delay_s = 0.06});
+  const Eigen::VectorXd without = later.white({});
+  const std::vector<HealthyFits> healthy;
+  const RunSpread spread;
+  const CauseSearch search{later, {}, without, healthy, spread};
+  const ScoredEffect best = scored(later, "transport_delay");
+  ScoredEffect other = scored(later, "valve_lag");
+  other.gain = 0.95 * best.gain;
+  EXPECT_TRUE(is_alternative(search, best, other, never));
+  other.gain = 0.85 * best.gain;
+  EXPECT_FALSE(is_alternative(search, best, other, never));
+  EXPECT_TRUE(is_alternative(search, best, other, [](const auto&, const auto&) { return true; }));
+  other.gain = 0.45 * best.gain;
+  EXPECT_FALSE(is_alternative(search, best, other, [](const auto&, const auto&) { return true; }));
+}
+
+TEST_F(ChangeClaim, AnAlternativeMayLeaveAnErrorWithinTheSpread) {
+  const LaterReadings later = readings({.delay_s = 0.06});
+  const Eigen::VectorXd without = later.white({});
+  const ScoredEffect best = scored(later, "transport_delay");
+  ScoredEffect other = scored(later, "valve_lag");
+  other.gain = 0.6 * best.gain;
+  const std::vector<HealthyFits> healthy = healthy_fits(base_, true, 1);
+  const RunSpread narrow(healthy, base_.units.runs()), wide(healthy, base_.units.runs(), {1e3, 1e3});
+  EXPECT_FALSE(is_alternative({later, {}, without, healthy, narrow}, best, other, never));
+  EXPECT_TRUE(is_alternative({later, {}, without, healthy, wide}, best, other, never));
+}
+
+TEST_F(ChangeClaim, AnImitationWithMoreParametersIsNoAlternative) {
+  const LaterReadings later = readings({.delay_s = 0.06});
+  const Eigen::VectorXd without = later.white({});
+  const std::vector<HealthyFits> healthy;
+  const RunSpread spread;
+  const CauseSearch search{later, {}, without, healthy, spread};
+  const ScoredEffect best = scored(later, "transport_delay");
+  ScoredEffect other = best;
+  other.fit.fitted.effect.id = "imitation";
+  EXPECT_TRUE(is_alternative(search, best, other, never));
+  other.fit.fitted.effect.numbers.push_back({"unused", "", 1, 0, 1});
+  EXPECT_FALSE(is_alternative(search, best, other, never));
+  other.gain = 1.01 * best.gain;
+  EXPECT_TRUE(is_alternative(search, best, other, never));
+}
+
+/// A delay must act while the command moves. It is not tested if it has no influence there.
+TEST_F(ChangeClaim, AnInvisibleEffectIsNotTested) {
+  const LaterReadings later = readings({.delay_s = 0.06});
+  const Eigen::VectorXd without = later.white({});
+  const std::vector<HealthyFits> healthy = healthy_fits(base_, true, 1);
+  const RunSpread spread(healthy, base_.units.runs());
+  const CauseSearch search{later, {}, without, healthy, spread};
+  ScoredEffect delay = scored(later, "transport_delay");
+  EXPECT_EQ(vetoed(search, delay), Veto::none);
+  delay.fit.white = without;
+  EXPECT_EQ(vetoed(search, delay), Veto::not_tested);
+}
+
+/// Returns a log with short rests between ramps. The readings are the prediction of `base`, noise, and a
+/// drift of 0.02 mm/s.
+Log drifting_log(const Base& base) {
+  Log log = test::log_of({}, 5);
+  std::vector<double> noise_mm = log.displacement_mm;
+  const std::vector<double> before = predict_base(base, make_records({log}, {}).front(), Extension{});
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    noise_mm[i] -= before[i];
+    const double phase_s = std::fmod(log.time_s[i], 9);
+    log.pressure_command_kpa[i] = 15 * std::clamp(std::min(phase_s - 2.5, 9 - phase_s), 0.0, 3.0);
+  }
+  const std::vector<double> after = predict_base(base, make_records({log}, {}).front(), Extension{});
+  for (std::size_t i = 0; i < log.size(); ++i)
+    log.displacement_mm[i] = after[i] + noise_mm[i] + 0.02 * log.time_s[i];
+  return log;
+}
+
+/// Whitening can remove a slow drift. It is then shown by the readings at rest without whitening.
+TEST(ChangeClaimOfDrift, ADriftIsShownByReadingsAtRestWithoutWhitening) {
+  const Base base =
+      fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
+  const std::vector<Record> records = make_records({drifting_log(base)}, {});
+  const LaterReadings later = readings_of(base, records, residuals_of(base, records));
+  std::vector<Effect> effects = effects_for(base, later.records(), {}, false);
+  std::erase_if(effects, [](const Effect& effect) { return effect.id != "sensor_drift"; });
+  const std::vector<FittedEffect> none;
+  const Eigen::VectorXd without = later.white(none);
+  const std::vector<HealthyFits> healthy = healthy_fits(base, false, 1);
+  const RunSpread spread(healthy, base.units.runs());
+  const CauseSearch search{later, none, without, healthy, spread};
+  ScoredEffect drift = ranked_effects(later, effects, {}, {}, 1).front();
+  EXPECT_EQ(vetoed(search, drift), Veto::none);
+  const std::vector<bool> rests = required_rows(later, Appears::at_rest);
+  EXPECT_GE(std::count(rests.begin(), rests.end(), true), 5);
+  // With these whitened residuals, the drift does not reduce the error at rest.
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (rests[i]) drift.fit.white(row) = -without(row);
+  }
+  EXPECT_EQ(vetoed(search, drift), Veto::none);
+  for (double& number : drift.fit.fitted.numbers) number *= 0.001;
+  EXPECT_NE(vetoed(search, drift), Veto::none);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::change_claim_test
