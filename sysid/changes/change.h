@@ -90,6 +90,8 @@ struct JudgedChange {
   double allowed_mm = 0;  ///< largest RMS error that is expected in another healthy run
   /// Factor by which an input unlike the healthy inputs increases the permitted mean square error, >= 1.
   double input_factor = 1;
+  /// Share of the readings that are not evaluated because they follow an unfamiliar command, 0 .. 1.
+  double unevaluated_share = 0;
   /// RMS error of the baseline model in the later logs, after a fit of zero and gain.
   double later_mm = 0;
   double explained_mm = 0;  ///< RMS error in the later logs if the effects of the causes are added to the

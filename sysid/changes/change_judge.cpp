@@ -59,6 +59,12 @@ std::string unfamiliar_input(double factor) {
          significant(factor, 2) + " (mean square). Record a healthy log with such an input";
 }
 
+std::string unfamiliar_commands(double share) {
+  return significant(100 * share, 2) +
+         " % of the measured pressures of the later logs are not evaluated, because there the command is "
+         "much farther from the pressure than in any healthy log. Record a healthy log with such steps";
+}
+
 /// Returns true if the gain of the later logs differs from the healthy gain by more than the gains of two
 /// runs of a finger usually differ.
 bool has_unusual_gain(const JudgedChange& judged) {
@@ -85,7 +91,13 @@ class Judge {
     healthy_ = healthy_fits(base_, pressure_is_judged_, options_.threads);
     spread_ = RunSpread(healthy_, base_.units.runs(), more);
     const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs(), more.loss);
-    const std::vector<std::vector<double>> residuals = residuals_of(base_, later);
+    std::vector<std::vector<double>> residuals = residuals_of(base_, later);
+    double unevaluated_share = 0;
+    if (base_.judged == Judged::pressure) {
+      unevaluated_share = remove_unfamiliar_commands(base_, later, residuals);
+      if (unevaluated_share > 1 - limits::probability)
+        diagnosis.warnings.push_back(unfamiliar_commands(unevaluated_share));
+    }
     const LaterReadings readings = readings_of(base_, later, residuals);
     const std::vector<Effect> effects =
         effects_for(base_, later, spectrum_peaks(later, residuals), pressure_is_judged_);
@@ -97,7 +109,9 @@ class Judge {
     judged.healthy_mm = spread_.usual_rms();
     judged.allowed_mm = spread_.allowed_rms();
     judged.input_factor = spread_.input_factor();
-    if (has_unfamiliar_input(judged)) diagnosis.warnings.push_back(unfamiliar_input(judged.input_factor));
+    judged.unevaluated_share = unevaluated_share;
+    if (judged.input_factor > limits::unfamiliar_factor)
+      diagnosis.warnings.push_back(unfamiliar_input(judged.input_factor));
     const std::vector<std::string> other_starts = readings.other_starts();
     for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
     std::vector<FittedEffect> found;

@@ -88,6 +88,8 @@ Fields fields_of(const JudgedChange& judged) {
       {"allowed_rms", "largest error expected for a further healthy run", number(judged.allowed_mm, 3, unit)},
       {"input_factor", "increase of the permitted mean square error by an unfamiliar input",
        number(judged.input_factor, 3)},
+      {"unevaluated_share", "share of the readings that are not evaluated",
+       number(judged.unevaluated_share, 2)},
       {"later_rms", "error of the later logs", number(judged.later_mm, 3, unit)},
       {"explained_rms", "error with the causes", number(judged.explained_mm, 3, unit)},
       {"whitened_loss", loss},

@@ -10,10 +10,6 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Time constants of the filters for a valve [s]. With the time constant 0, the output equals the input. This
-/// filter is left out if the filter bank also represents the finger, because the finger adds a lag.
-constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
-
 template <class F>
 Values each(const Values& x, F&& f) {
   Values y(x.size());

@@ -22,6 +22,9 @@ enum class FilterKind {
 /// Time constants of the filters for a finger [s]. The four longest ones exceed the duration of most motions.
 /// They also describe the transient after the start of a log.
 inline constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
+/// Time constants of the filters for a valve [s]. With the time constant 0, the output equals the input. This
+/// filter is left out if the filter bank also represents the finger, because the finger adds a lag.
+inline constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
 inline constexpr std::size_t slow_lags = 4;
 
 /// Returns the filtered signals: one row per sample and one column per weight, in units of the drive [kPa].

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
+#include "sysid/changes/filter_bank.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
@@ -40,7 +42,44 @@ Disagreement expected_disagreement(const Base& base, const HealthyModel& other) 
   return expected;
 }
 
+/// Returns the distance of the command from the pressure that the baseline model predicts, at each sample.
+std::vector<double> distance_kpa(const Base& base, const Record& record) {
+  std::vector<double> distance = predict_base(base, record, {});
+  for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = record.drive_kpa[i] - distance[i];
+  return distance;
+}
+
 }  // namespace
+
+double remove_unfamiliar_commands(const Base& base, const std::vector<Record>& later,
+                                  std::vector<std::vector<double>>& left_kpa) {
+  constexpr double most = limits::comparable_ratio;
+  double lowest_kpa = 0, highest_kpa = 0, removed = 0, all = 0;
+  for (const Record& healthy : base.records) {
+    for (const double kpa : distance_kpa(base, healthy)) {
+      lowest_kpa = std::min(lowest_kpa, kpa);
+      highest_kpa = std::max(highest_kpa, kpa);
+    }
+  }
+  for (std::size_t r = 0; r < later.size(); ++r) {
+    // The healthy records are thinned, which reduces the distance at a step, so the later one is thinned too.
+    const Record thinned = thinned_for(base, later[r]);
+    const std::vector<double> distance = distance_kpa(base, thinned);
+    double until_s = -std::numeric_limits<double>::infinity();
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < later[r].size(); ++i) {
+      for (; next < thinned.size() && thinned.time_s[next] <= later[r].time_s[i]; ++next) {
+        if (distance[next] < most * lowest_kpa || distance[next] > most * highest_kpa)
+          until_s = thinned.time_s[next] + valve_lags_s.back();
+      }
+      all += 1;
+      if (later[r].time_s[i] > until_s) continue;
+      left_kpa[r][i] = std::numeric_limits<double>::quiet_NaN();
+      removed += 1;
+    }
+  }
+  return all > 0 ? removed / all : 0;
+}
 
 Disagreement added_disagreement(const Base& base, const std::vector<Record>& later) {
   const std::vector<std::vector<double>> own = residuals_of(base, later);
@@ -58,7 +97,8 @@ Disagreement added_disagreement(const Base& base, const std::vector<Record>& lat
 }
 
 bool has_unfamiliar_input(const JudgedChange& judged) {
-  return judged.input_factor > limits::unfamiliar_factor;
+  return judged.input_factor > limits::unfamiliar_factor ||
+         judged.unevaluated_share > limits::equal_error_share;
 }
 
 }  // namespace softgrip::sysid

@@ -18,8 +18,19 @@ namespace softgrip::sysid {
 /// @param later  later records at the full sampling rate.
 [[nodiscard]] Disagreement added_disagreement(const Base& base, const std::vector<Record>& later);
 
-/// Returns true if the input of the later logs increases the permitted error so much that the answer states
-/// it.
+/// Sets those residuals of a pressure to NaN that follow an unfamiliar command, up to the longest memory of
+/// the baseline model. A command is unfamiliar if its distance from the predicted pressure exceeds the
+/// largest distance in the healthy records by more than 25 %. For such a command, the healthy records do not
+/// show how fast the air flows.
+/// @param later  later records at the full sampling rate.
+/// @param left_kpa  residuals, one list per later record.
+/// @return share of the residuals that were set to NaN, 0 .. 1.
+double remove_unfamiliar_commands(const Base& base, const std::vector<Record>& later,
+                                  std::vector<std::vector<double>>& left_kpa);
+
+/// Returns true if the input of the later logs is so unlike the healthy inputs that the answer states it. The
+/// input increases the permitted mean square error by more than 10 %, or more than 10 % of the readings are
+/// not evaluated.
 [[nodiscard]] bool has_unfamiliar_input(const JudgedChange& judged);
 
 }  // namespace softgrip::sysid
