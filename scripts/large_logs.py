@@ -112,7 +112,7 @@ def timed(softgrip, name, made, threads, folder):
     paths = [a for a in arguments if isinstance(a, pathlib.Path) and a.suffix == ".csv"]
     rows = sum(len(path.read_text().splitlines()) - 1 for path in paths)
     began, before = time.monotonic(), os.times()
-    done = subprocess.run([softgrip, program, *arguments, "--threads", str(threads), "--out", folder / "out", "--json"],
+    done = subprocess.run([softgrip, program, *arguments, "--threads", str(threads), "--out", folder / program, "--json"],
                           capture_output=True, text=True, check=False)
     after = os.times()
     if done.returncode not in (0, 6):
