@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/numbers.h"
@@ -269,10 +270,10 @@ class Judge {
       if (vetoes[i] == Veto::not_tested) judged.not_tested.emplace(effect.id, recording_for(effect.appears));
       if (vetoes[i] == Veto::none || vetoes[i] == Veto::not_tested) cause.alternatives.push_back(effect.id);
     }
-    if ((cause.id == causes::Ageing::WithTime::id ||
-         std::count(cause.alternatives.begin(), cause.alternatives.end(), causes::Ageing::WithTime::id) >
-             0) &&
-        std::count(cause.alternatives.begin(), cause.alternatives.end(), payload.id) == 0 &&
+    const auto contains = [&](std::string_view id) {
+      return cause.id == id || std::count(cause.alternatives.begin(), cause.alternatives.end(), id) > 0;
+    };
+    if (contains(causes::Ageing::WithTime::id) && !contains(payload.id) &&
         is_another_zero(readings.nuisance(search.with(best)).zero_mm))
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);

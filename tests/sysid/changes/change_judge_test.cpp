@@ -178,6 +178,8 @@ TEST(Weight, OnANonlinearFingerIsNamedWithItsPressure) {
                {}, diagnosis);
   ASSERT_EQ(diagnosis.causes.size(), 1U) << change_sentence(diagnosis);
   EXPECT_EQ(diagnosis.causes.front().id, "payload");
+  const std::vector<std::string>& alternatives = diagnosis.causes.front().alternatives;
+  EXPECT_EQ(std::count(alternatives.begin(), alternatives.end(), "payload"), 0);
   EXPECT_EQ(diagnosis.causes.front().size.unit, "kPa");
   EXPECT_NEAR(diagnosis.causes.front().size.value, 8, 1.5);
 }
