@@ -87,8 +87,11 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-BaseStructure play_structure(Drive drive) {
-  return {.hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
+BaseStructure play_structure(Drive drive, std::size_t modes = 0) {
+  return {.hysteresis = HysteresisForm::play,
+          .delay = drive == Drive::command,
+          .hinged_creep = true,
+          .modes = modes};
 }
 
 /// Returns the candidate with this structure. Its input is the drive of the records that it is fitted to.
@@ -105,10 +108,9 @@ bool may_have_a_mode(const std::vector<Record>& records, Drive drive) {
   const std::vector<Record> few = with_fewer_readings(records, options.most_rows);
   const StructureGrid grid = grid_for(few);
   const FittedStructure still = fit_form(few, play_structure(drive), grid, options);
-  BaseStructure moving = still.structure;
-  moving.modes = 1;
-  return starts_of_next_mode(few, moving, grid, still.numbers, options).front().mean_square_mm2 <
-         (1 - limits::equal_error_share) * still.mean_square_mm2;
+  return starts_of_next_mode(few, play_structure(drive, 1), grid, still.numbers, options)
+             .front()
+             .mean_square_mm2 < (1 - limits::equal_error_share) * still.mean_square_mm2;
 }
 
 std::vector<Candidate> candidates(const std::vector<Record>& records, const Base& base,
@@ -130,11 +132,8 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
     const Regulator regulator = fit_regulator(records, base.largest_kpa);
     all.push_back({"a regulator, " + play.description, regulator, play.fit});
   }
-  if (may_have_a_mode(records, base.drive)) {
-    BaseStructure moving = play_structure(base.drive);
-    moving.modes = 1;
-    all.push_back(candidate_of(moving, base.drive));
-  }
+  if (may_have_a_mode(records, base.drive))
+    all.push_back(candidate_of(play_structure(base.drive, 1), base.drive));
   if (options.given) {
     const model::Model model = deterministic_part(*options.given, base.drive);
     all.push_back({"the given model", {}, [model](const std::vector<Record>& driven) {

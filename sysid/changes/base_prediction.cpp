@@ -120,11 +120,12 @@ StartState start_of(const model::Model& model, const Record& record) {
   return start;
 }
 
-Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve,
-                 const RegulatorFault& fault, const Load& load, const StartState* start) {
+Driven driven_by(const Base& base, const Record& record, const Extension& extension,
+                 const StartState* start) {
+  const std::vector<model::BlockSpec>& valve = extension.valve;
   Driven driven{record, {}, base.model, {}, {}, {}};
   if (base.regulator || !valve.empty()) {
-    driven.record.drive_kpa = drive_of(base, record, valve, fault);
+    driven.record.drive_kpa = drive_of(base, record, valve, extension.fault);
     driven.record.held = false;
   }
   const bool whole_is_simulated =
@@ -132,7 +133,7 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
   const auto whole = whole_is_simulated ? with_valve(base.model, valve) : std::nullopt;
   if (whole) driven.model = *whole;
   driven.simulated = whole ? record : driven.record;
-  if (load != Load{}) {
+  if (const Load& load = extension.load; load != Load{}) {
     for (Record* const each : {&driven.record, &driven.simulated}) {
       for (double& p : each->drive_kpa) p = load.factor * p - load.weight_kpa;
     }
@@ -152,8 +153,7 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
       extension.load == Load{})
     return driven_prediction(base, *driven, extension);
   const StartState* const start = driven != nullptr ? &driven->start : nullptr;
-  return driven_prediction(
-      base, driven_by(base, record, extension.valve, extension.fault, extension.load, start), extension);
+  return driven_prediction(base, driven_by(base, record, extension, start), extension);
 }
 
 std::vector<std::vector<double>> residuals_of(const Base& base, const std::vector<Record>& records) {

@@ -39,14 +39,10 @@ struct Driven {
   std::vector<double> plain;  ///< prediction of the model alone at each sample
 };
 /// Simulates the valve of the baseline model.
-/// @param valve  additional blocks between the command and the baseline model.
-/// @param fault  faults of the regulator of the baseline model.
-/// @param load  load line of the finger.
+/// @param extension  only its changes of the drive are applied: blocks and faults of the valve, and the load.
 /// @param start  initial state of the model; nullptr: the initial state is estimated from the first readings
 /// of the record.
-[[nodiscard]] Driven driven_by(const Base& base, const Record& record,
-                               const std::vector<model::BlockSpec>& valve = {},
-                               const RegulatorFault& fault = {}, const Load& load = {},
+[[nodiscard]] Driven driven_by(const Base& base, const Record& record, const Extension& extension = {},
                                const StartState* start = nullptr);
 
 /// Returns the prediction of the baseline model with the effects of `extension`. The prediction contains no

@@ -63,8 +63,8 @@ inline constexpr double form_error_share = 0.05;
 /// Largest relative difference between the errors of two hypotheses for which the simpler hypothesis is
 /// preferred.
 inline constexpr double equal_error_share = 0.1;
-/// Largest ratio of the error of a candidate to the smallest error for which the candidate stays in a
-/// comparison.
+/// Largest ratio of two quantities that still count as comparable: of the error of a candidate to the
+/// smallest error, and of a distance between command and pressure to the largest healthy one.
 inline constexpr double comparable_ratio = 1.25;
 /// An input is unfamiliar if it increases the permitted mean square error by more than this factor.
 inline constexpr double unfamiliar_factor = 1 + equal_error_share;

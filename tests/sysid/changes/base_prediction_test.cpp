@@ -43,7 +43,7 @@ TEST(BasePrediction, LoadLineIsAMapOfTheDrive) {
     Extension loaded;
     loaded.load = {1.2, 3};
     const std::vector<double> p = predict_base(base, record, loaded, &driven);
-    const Driven expected_drive = driven_by(base, mapped, {}, {}, {}, &driven.start);
+    const Driven expected_drive = driven_by(base, mapped, {}, &driven.start);
     const std::vector<double> expected = predict_base(base, mapped, {}, &expected_drive);
     ASSERT_EQ(p.size(), expected.size());
     double largest_mm = 0;

@@ -15,72 +15,65 @@ namespace {
 
 class ChangeClaim : public test::PressureBase {
  protected:
+  [[nodiscard]] CauseSearch search_with(const RunSpread& spread) const {
+    return {later_, none_, without_, healthy_, spread};
+  }
   /// Returns the effect of this cause with the largest error reduction.
-  [[nodiscard]] static ScoredEffect scored(const LaterReadings& later, const std::string& id) {
-    std::vector<Effect> effects = effects_for(later.base(), later.records(), {}, true);
+  [[nodiscard]] ScoredEffect scored(const std::string& id) const {
+    std::vector<Effect> effects = effects_for(base_, later_.records(), {}, true);
     std::erase_if(effects, [&](const Effect& effect) { return effect.id != id; });
-    return ranked_effects(later, effects, {}, {}, 1).front();
+    return ranked_effects(later_, effects, {}, {}, 1).front();
   }
   [[nodiscard]] static bool never(const ScoredEffect&, const ScoredEffect&) { return false; }
+  [[nodiscard]] static bool always(const ScoredEffect&, const ScoredEffect&) { return true; }
+
+  const LaterReadings later_ = readings({.delay_s = 0.06});
+  const std::vector<FittedEffect> none_;
+  const Eigen::VectorXd without_ = later_.white(none_);
+  const std::vector<HealthyFits> healthy_ = healthy_fits(base_, true, 1);
+  const RunSpread spread_{healthy_, base_.units.runs()};
+  const CauseSearch search_ = search_with(spread_);
 };
 
-/// The numbers of alternatives depend on the gains only, because the bounds of the spread are 0.
+/// The remaining error exceeds the spread, so only the error reductions decide.
 TEST_F(ChangeClaim, AlternativesReduceTheErrorNearlyAsMuch) {
-  const LaterReadings later = readings({.delay_s = 0.06});
-  const Eigen::VectorXd without = later.white({});
-  const std::vector<HealthyFits> healthy;
-  const RunSpread spread;
-  const CauseSearch search{later, {}, without, healthy, spread};
-  const ScoredEffect best = scored(later, "transport_delay");
-  ScoredEffect other = scored(later, "valve_lag");
+  const ScoredEffect best = scored("transport_delay");
+  ScoredEffect other = scored("valve_lag");
   other.gain = 0.95 * best.gain;
-  EXPECT_TRUE(is_alternative(search, best, other, never));
+  EXPECT_TRUE(is_alternative(search_, best, other, never));
   other.gain = 0.85 * best.gain;
-  EXPECT_FALSE(is_alternative(search, best, other, never));
-  EXPECT_TRUE(is_alternative(search, best, other, [](const auto&, const auto&) { return true; }));
+  EXPECT_FALSE(is_alternative(search_, best, other, never));
+  EXPECT_TRUE(is_alternative(search_, best, other, always));
   other.gain = 0.45 * best.gain;
-  EXPECT_FALSE(is_alternative(search, best, other, [](const auto&, const auto&) { return true; }));
+  EXPECT_FALSE(is_alternative(search_, best, other, always));
 }
 
 TEST_F(ChangeClaim, AnAlternativeMayLeaveAnErrorWithinTheSpread) {
-  const LaterReadings later = readings({.delay_s = 0.06});
-  const Eigen::VectorXd without = later.white({});
-  const ScoredEffect best = scored(later, "transport_delay");
-  ScoredEffect other = scored(later, "valve_lag");
+  const ScoredEffect best = scored("transport_delay");
+  ScoredEffect other = scored("valve_lag");
   other.gain = 0.6 * best.gain;
-  const std::vector<HealthyFits> healthy = healthy_fits(base_, true, 1);
-  const RunSpread narrow(healthy, base_.units.runs()), wide(healthy, base_.units.runs(), {1e3, 1e3});
-  EXPECT_FALSE(is_alternative({later, {}, without, healthy, narrow}, best, other, never));
-  EXPECT_TRUE(is_alternative({later, {}, without, healthy, wide}, best, other, never));
+  const RunSpread wide(healthy_, base_.units.runs(), {1e3, 1e3});
+  EXPECT_FALSE(is_alternative(search_, best, other, never));
+  EXPECT_TRUE(is_alternative(search_with(wide), best, other, never));
 }
 
 TEST_F(ChangeClaim, AnImitationWithMoreParametersIsNoAlternative) {
-  const LaterReadings later = readings({.delay_s = 0.06});
-  const Eigen::VectorXd without = later.white({});
-  const std::vector<HealthyFits> healthy;
-  const RunSpread spread;
-  const CauseSearch search{later, {}, without, healthy, spread};
-  const ScoredEffect best = scored(later, "transport_delay");
+  const ScoredEffect best = scored("transport_delay");
   ScoredEffect other = best;
   other.fit.fitted.effect.id = "imitation";
-  EXPECT_TRUE(is_alternative(search, best, other, never));
+  EXPECT_TRUE(is_alternative(search_, best, other, never));
   other.fit.fitted.effect.numbers.push_back({"unused", "", 1, 0, 1});
-  EXPECT_FALSE(is_alternative(search, best, other, never));
+  EXPECT_FALSE(is_alternative(search_, best, other, never));
   other.gain = 1.01 * best.gain;
-  EXPECT_TRUE(is_alternative(search, best, other, never));
+  EXPECT_TRUE(is_alternative(search_, best, other, never));
 }
 
 /// A delay must act while the command moves. It is not tested if it has no influence there.
 TEST_F(ChangeClaim, AnInvisibleEffectIsNotTested) {
-  const LaterReadings later = readings({.delay_s = 0.06});
-  const Eigen::VectorXd without = later.white({});
-  const std::vector<HealthyFits> healthy = healthy_fits(base_, true, 1);
-  const RunSpread spread(healthy, base_.units.runs());
-  const CauseSearch search{later, {}, without, healthy, spread};
-  ScoredEffect delay = scored(later, "transport_delay");
-  EXPECT_EQ(vetoed(search, delay), Veto::none);
-  delay.fit.white = without;
-  EXPECT_EQ(vetoed(search, delay), Veto::not_tested);
+  ScoredEffect delay = scored("transport_delay");
+  EXPECT_EQ(vetoed(search_, delay), Veto::none);
+  delay.fit.white = without_;
+  EXPECT_EQ(vetoed(search_, delay), Veto::not_tested);
 }
 
 /// Returns a log with short rests between ramps. The readings are the prediction of `base`, noise, and a
