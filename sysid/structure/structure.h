@@ -62,24 +62,6 @@ struct BaseStructure {
 /// venting), characteristic".
 [[nodiscard]] std::string description_of(const BaseStructure& structure);
 
-/// Parameters of the operators that are fixed before a fit: thresholds, time constants, and threshold
-/// pressures of creep (hinges).
-struct StructureGrid {
-  double time_unit_s = 1;  ///< result of time_unit_s() for the records
-  double largest_kpa = 0;  ///< largest magnitude of the drive
-  double span_mm = 0;      ///< largest magnitude of the readings
-  /// Thresholds of the play operators in increasing order. The elastic operator (threshold 0) is not in the
-  /// list.
-  std::vector<double> thresholds_kpa;
-  std::vector<double> ladder_s;  ///< time constants of the creep branches, in increasing order
-  /// Smallest time constant that counts as slow creep.
-  double slow_from_s = 0;
-  std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, in increasing order
-  std::vector<double> hinge_ladder_s;  ///< time constants of the creep branches above each threshold pressure
-                                       ///< (hinge)
-  double shortest_period_s = 0;        ///< shortest period of a linear mode
-};
-
 /// The two parameters of a linear mode that affect the displacement nonlinearly, as in model::LinearModes.
 struct ModeNumbers {
   double period_s = 0;

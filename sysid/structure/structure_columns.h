@@ -10,6 +10,7 @@
 #include "sysid/logs/record.h"
 #include "sysid/structure/driven_pressure.h"
 #include "sysid/structure/structure.h"
+#include "sysid/structure/structure_grid.h"
 
 namespace softgrip::sysid {
 

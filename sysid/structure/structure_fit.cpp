@@ -21,19 +21,14 @@ namespace {
 /// Penalty for a parameter at a distance of one prior width from its prior value. The penalty is added to the
 /// logarithm of the sum of squared residuals.
 constexpr double prior = 0.05;
-/// Lower limit of the instantaneous elastic gain, as a share of (displacement range / largest pressure).
-constexpr double least_elastic_share = 0.01;
 /// Upper limit of the dead band of a regulator, as a share of the largest pressure. Data sheets state values
 /// from 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
 /// Prior width of the bend and of the skew of an envelope. With twice this width, envelopes would fit the
 /// saturation of a sensor and thereby hide the saturation (seen in the textbook test cases).
 constexpr double usual_bend = 0.05;
-/// Ratio of consecutive time constants of the creep branches.
-constexpr double ladder_ratio = 3;
-/// Limits of linear modes: prior width of the logarithms of period and damping ratio, shortest period in
-/// sampling intervals (the Nyquist period is 2), and longest period in units of time_unit_s().
-constexpr double mode_width = 3, shortest_mode_in_intervals = 4, longest_mode_in_units = 10;
+/// Prior width of the logarithms of the period and of the damping ratio of a linear mode.
+constexpr double mode_width = 3;
 
 /// A nonlinear parameter of the search. It is scaled to a coordinate t whose magnitude is about 1.
 struct Coordinate {
@@ -290,14 +285,6 @@ std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumber
 
 }  // namespace
 
-double least_elastic_mm_per_kpa(const StructureGrid& grid) {
-  return least_elastic_share * grid.span_mm / grid.largest_kpa;
-}
-
-double longest_mode_s(const StructureGrid& grid) {
-  return std::min(longest_mode_in_units * grid.time_unit_s, 1e6);  // 1e6 s: limit of the block
-}
-
 NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {
   const double unit_s = grid.time_unit_s;
   numbers.filling_s = std::clamp(numbers.filling_s, 1e-3 * unit_s, 0.03 * unit_s);
@@ -307,33 +294,6 @@ NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureG
   numbers.integral_s = 0.4 * unit_s;
   numbers.full_open_kpa = 0.2 * grid.largest_kpa;
   return numbers;
-}
-
-StructureGrid grid_for(const std::vector<Record>& records) {
-  StructureGrid grid;
-  grid.time_unit_s = time_unit_s(records);
-  grid.shortest_period_s = std::numeric_limits<double>::infinity();
-  double longest_s = 0;
-  std::size_t cycles = 0;
-  for (const Record& record : records) {
-    grid.shortest_period_s =
-        std::min(grid.shortest_period_s, shortest_mode_in_intervals * record.mean_interval_s());
-    grid.largest_kpa = std::max(grid.largest_kpa, record.largest_kpa);
-    grid.span_mm = std::max(grid.span_mm, record.span_mm);
-    longest_s = std::max(longest_s, record.length_s());
-    cycles += cycle_starts(record).size();
-  }
-  const int plays = cycles > 2 ? 12 : 6;
-  for (int i = 1; i <= plays; ++i)
-    grid.thresholds_kpa.push_back(0.95 * std::pow(static_cast<double>(i) / plays, 1.5) * grid.largest_kpa);
-  for (double tau = 0.05 * grid.time_unit_s; tau < 3 * longest_s && grid.ladder_s.size() < 10;
-       tau *= ladder_ratio)
-    grid.ladder_s.push_back(tau);
-  grid.slow_from_s = longest_s / 10;
-  grid.hinges_kpa = {0.25 * grid.largest_kpa, 0.5 * grid.largest_kpa, 0.75 * grid.largest_kpa};
-  for (double tau = 0.25 * grid.time_unit_s; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
-    grid.hinge_ladder_s.push_back(tau);
-  return grid;
 }
 
 FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,

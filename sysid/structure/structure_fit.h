@@ -9,6 +9,7 @@
 #include "model/model.h"
 #include "sysid/logs/record.h"
 #include "sysid/structure/structure.h"
+#include "sysid/structure/structure_grid.h"
 
 namespace softgrip::sysid {
 
@@ -30,15 +31,6 @@ struct FittedStructure {
   bool converged = false;
   std::vector<double> start_rmse_mm;  ///< for each start point, the RMSE at the end of the search
 };
-
-/// Returns the thresholds, time constants and hinges that are used for these records. If the records contain
-/// at most two cycles, the number of play operators is smaller.
-[[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
-
-/// Returns the smallest instantaneous elastic gain of a structure that has an inverse [mm/kPa].
-[[nodiscard]] double least_elastic_mm_per_kpa(const StructureGrid& grid);
-/// Returns the longest period of a linear mode in a fit [s].
-[[nodiscard]] double longest_mode_s(const StructureGrid& grid);
 
 /// Returns start parameters for the fit of a regulator. They replace the parameters of a fitted lag. The
 /// overlap, and the pressure error at which the port is fully open, are proportional to the largest pressure.
