@@ -1,6 +1,7 @@
 #include "sysid/changes/change_result.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/numbers.h"
 #include "sysid/changes/next_steps.h"
@@ -70,6 +71,24 @@ std::string named(const ChangeCause& cause) {
   for (const std::string& alternative : cause.alternatives)
     text += ", or " + std::string(plain_words(alternative)) + " (" + alternative + ")";
   return text;
+}
+
+/// Returns the sentence for an unchanged verdict with one healthy log. The halves of a single log do not show
+/// how much healthy runs differ, so the sentence states how large an error would be reported.
+std::string unchanged_since_one_log(const std::vector<JudgedChange>& readings) {
+  const auto share = [](const JudgedChange& judged) { return judged.later_mm / judged.allowed_mm; };
+  const JudgedChange& nearest =
+      *std::max_element(readings.begin(), readings.end(),
+                        [&](const JudgedChange& a, const JudgedChange& b) { return share(a) < share(b); });
+  const double ratio = nearest.later_mm / nearest.healthy_mm;
+  if (!(ratio > 1) || !std::isfinite(ratio))
+    return "Unchanged: the error of the later logs does not exceed the error between the two halves of the "
+           "healthy log.";
+  return "No change is detectable with one healthy log: the error of the later logs is " +
+         significant(ratio, 2) +
+         " times the error between the two halves of the healthy log, and a change is reported only above " +
+         significant(nearest.allowed_mm / nearest.healthy_mm, 2) +
+         " times. Record three or more healthy logs.";
 }
 
 }  // namespace
@@ -171,6 +190,10 @@ std::string change_sentence(const ChangeDiagnosis& diagnosis) {
       std::any_of(readings.begin(), readings.end(), has_unfamiliar_input))
     return "No change is detectable, but the input of the later logs is unlike the inputs of the healthy "
            "logs. Therefore, a larger difference from the baseline model is permitted.";
+  if (diagnosis.verdict == ChangeVerdict::unchanged && !readings.empty() &&
+      std::all_of(readings.begin(), readings.end(),
+                  [](const JudgedChange& j) { return j.healthy_runs == 1; }))
+    return unchanged_since_one_log(readings);
   if (diagnosis.verdict == ChangeVerdict::unchanged)
     return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
            "from each other.";

@@ -403,6 +403,29 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
   EXPECT_EQ(json["error_reduction_percent"], json["gain_percent"]);
 }
 
+TEST(ChangeResult, WithOneHealthyLogTheSentenceStatesWhichErrorWouldBeReported) {
+  ChangeDiagnosis d;
+  d.verdict = ChangeVerdict::unchanged;
+  d.readings.resize(2);
+  for (JudgedChange& judged : d.readings) {
+    judged.healthy_runs = 1;
+    judged.healthy_mm = 0.5;
+    judged.allowed_mm = 1.5;
+    judged.later_mm = 0.4;
+  }
+  EXPECT_EQ(change_sentence(d),
+            "Unchanged: the error of the later logs does not exceed the error between the two halves of the "
+            "healthy log.");
+  d.readings[1].later_mm = 0.8;
+  EXPECT_EQ(
+      change_sentence(d),
+      "No change is detectable with one healthy log: the error of the later logs is 1.6 times the error "
+      "between the two halves of the healthy log, and a change is reported only above 3 times. Record "
+      "three or more healthy logs.");
+  d.readings[0].healthy_runs = 3;
+  EXPECT_EQ(change_sentence(d).find("one healthy log"), std::string::npos);
+}
+
 TEST(ChangeResult, ParametersHaveTheDeprecatedNameBesideTheName) {
   ChangeDiagnosis d;
   d.readings.emplace_back();
