@@ -50,7 +50,8 @@ class SecondOrder {
   }
 
   /// Advances by a power series in t / dt. The coefficients follow from the differential equation. In a short
-  /// segment, the 22 terms have the full accuracy of a double.
+  /// segment, at most 22 terms are needed for the full accuracy of a double. The series ends when two
+  /// consecutive terms no longer change the sums.
   T advance_by_series(const Segment<T>& in) {
     const T bend = in.bend();
     const T angle = omega_ * in.duration_s;
@@ -60,7 +61,9 @@ class SecondOrder {
     T value = now + next;
     T rate = next;
     T mean = now + next * 0.5;
+    bool was_settled = false;
     for (std::size_t n = 0; n < 20; ++n) {
+      const T value_before = value, rate_before = rate, mean_before = mean;
       const auto order = static_cast<double>(n);
       T drive = -now;
       if (n < input.size()) drive += input[n];
@@ -71,6 +74,10 @@ class SecondOrder {
       value += next;
       rate += next * (order + 2.0);
       mean += next * (1.0 / (order + 3.0));
+      const bool is_settled = n >= input.size() && same(value, value_before) && same(rate, rate_before) &&
+                              same(mean, mean_before);
+      if (is_settled && was_settled) break;
+      was_settled = is_settled;
     }
     value_ = value;
     rate_ = rate / in.duration_s;
@@ -85,7 +92,24 @@ class SecondOrder {
   /// Distance of d^2 from 1 below which the two poles are treated as one double pole.
   static constexpr double double_pole = 1e-6;
 
-  [[nodiscard]] Decay decay_after(const T& dt) const {
+  /// The decay for a duration that occurred recently. Durations occur repeatedly: the sampling interval, and
+  /// the pieces into which a delay divides it.
+  struct Kept {
+    T duration_s{0.0};
+    Decay decay{T(1.0), T(0.0)};
+  };
+
+  [[nodiscard]] const Decay& decay_after(const T& dt) {
+    for (const Kept& kept : kept_) {
+      if (same(kept.duration_s, dt)) return kept.decay;
+    }
+    Kept& kept = kept_[next_];
+    next_ = (next_ + 1) % kept_.size();
+    kept = {dt, new_decay(dt)};
+    return kept.decay;
+  }
+
+  [[nodiscard]] Decay new_decay(const T& dt) const {
     using std::cos;
     using std::exp;
     using std::expm1;
@@ -119,7 +143,7 @@ class SecondOrder {
     const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
     const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);
     const T decay = damping_ * omega_;
-    const auto [cosine, sine] = decay_after(dt);
+    const auto& [cosine, sine] = decay_after(dt);
     const T offset = value_ - a;
     const T rate = rate_ - b;
     value_ = a + b * dt + c * dt * dt + (cosine + decay * sine) * offset + sine * rate;
@@ -130,6 +154,8 @@ class SecondOrder {
   T damping_;
   T value_{0.0};
   T rate_{0.0};
+  std::array<Kept, 3> kept_{};
+  std::size_t next_ = 0;
 };
 
 }  // namespace softgrip::model

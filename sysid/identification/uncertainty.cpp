@@ -9,6 +9,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "sysid/fitting/jacobian.h"
 #include "sysid/limits/limits.h"
@@ -29,17 +30,38 @@ struct Coordinates {
   std::vector<bool> unseen;  ///< per coordinate, true: a change along it changes no residual measurably
 };
 
-Coordinates coordinates_of(const MatrixXd& bread) {
+/// Number of rows that are processed together. These rows fit into the cache of a processor.
+constexpr Index rows_at_once = 1024;
+
+/// Returns the upper triangular factor R of a QR decomposition of the columns `keep` of a matrix, without the
+/// rows that have no curvature. The rows are added in groups: R of all rows up to a group is the factor of
+/// the previous R and the group.
+MatrixXd triangular_factor(const Jacobian& all, const std::vector<Index>& keep,
+                           const std::vector<bool>& is_curved) {
+  const auto n = static_cast<Index>(keep.size());
+  MatrixXd stacked = MatrixXd::Zero(n + rows_at_once, n);
+  for (Index first = 0; first < all.rows(); first += rows_at_once) {
+    for (Index i = 0; i < rows_at_once; ++i) {
+      const Index row = first + i;
+      const bool counts = row < all.rows() && is_curved[static_cast<std::size_t>(row)];
+      for (Index k = 0; k < n; ++k)
+        stacked(n + i, k) = counts ? all(row, keep[static_cast<std::size_t>(k)]) : 0.0;
+    }
+    const MatrixXd upper =
+        Eigen::HouseholderQR<MatrixXd>(stacked).matrixQR().topRows(n).triangularView<Eigen::Upper>();
+    stacked.topRows(n) = upper;
+  }
+  return stacked.topRows(n);
+}
+
+/// @param upper  triangular factor of B.
+Coordinates coordinates_of(const MatrixXd& upper) {
   // Share of the largest singular value below which a singular value cannot be distinguished from the
   // rounding errors of the simulation. This lower limit keeps the standard deviation of such a direction
   // finite, but very large.
   constexpr double resolution = 1e-10;
-  const Eigen::VectorXd scale = bread.colwise().norm().transpose().cwiseMax(1e-150).cwiseInverse();
-  MatrixXd scaled = MatrixXd::Zero(std::max(bread.rows(), bread.cols()), bread.cols());
-  scaled.topRows(bread.rows()) = bread * scale.asDiagonal();
-  const MatrixXd upper =
-      Eigen::HouseholderQR<MatrixXd>(scaled).matrixQR().topRows(scaled.cols()).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd> svd(upper, Eigen::ComputeFullV);
+  const Eigen::VectorXd scale = upper.colwise().norm().transpose().cwiseMax(1e-150).cwiseInverse();
+  const Eigen::JacobiSVD<MatrixXd> svd(MatrixXd(upper * scale.asDiagonal()), Eigen::ComputeFullV);
   const double smallest = std::max(resolution * svd.singularValues()(0), 1e-300);
   Coordinates c{scale.asDiagonal() * svd.matrixV(), {}};
   for (Index k = 0; k < c.to_z.cols(); ++k) {
@@ -59,32 +81,38 @@ class CorrelatedNoise {
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
-  /// Returns the covariance W' C W of the estimates in the coordinates y.
-  [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
-    MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
-    for_each_record([&](Index first, Index count) {
-      const Jacobian x = backwards(jacobian_.middleRows(first, count), noise);
-      sum.noalias() += x.transpose() * x;
-    });
-    return noise.innovation_mm * noise.innovation_mm * sum;
+  /// Filters W for a noise model, and returns the covariance W' C W of the estimates in the coordinates y.
+  [[nodiscard]] MatrixXd product(const NoiseModel& noise) {
+    filtered_ = jacobian_;
+    for_each_record([&](Index first, Index count) { backwards(filtered_.middleRows(first, count), noise); });
+    return noise.innovation_mm * noise.innovation_mm * (filtered_.transpose() * filtered_);
   }
 
   /// Increases the autocovariances of the residuals by the part of the noise that the fit has absorbed. With
   /// the noise covariance C, the covariance of the residuals is (I - H) C (I - H), where H = W W'.
-  void give_back(const NoiseModel& noise, const MatrixXd& meat, Autocovariance& covariance) const {
+  /// @param noise, meat  argument and result of the last call of product().
+  void give_back(const NoiseModel& noise, const MatrixXd& meat, Autocovariance& covariance) {
+    for_each_record([&](Index first, Index count) { forwards(filtered_.middleRows(first, count), noise); });
     const double s2 = noise.innovation_mm * noise.innovation_mm;
     for_each_record([&](Index first, Index count) {
       const auto w = jacobian_.middleRows(first, count);
-      const Jacobian cw = s2 * forwards(backwards(w, noise), noise);
-      const Jacobian wm = w * meat;
-      for (std::size_t lag = 0; lag < covariance.lags.size(); ++lag) {
-        const Index n = count - static_cast<Index>(lag);
-        if (n <= 0) break;
-        const double taken = w.topRows(n).cwiseProduct(cw.bottomRows(n)).sum() +
-                             cw.topRows(n).cwiseProduct(w.bottomRows(n)).sum() -
-                             wm.topRows(n).cwiseProduct(w.bottomRows(n)).sum();
-        covariance.lags[lag] += taken / static_cast<double>(covariance.samples);
-      }
+      const auto cw = filtered_.middleRows(first, count);
+      const Jacobian rest = s2 * cw - w * meat;
+      const auto lags = static_cast<Index>(covariance.lags.size());
+      const Index groups = (count + rows_at_once - 1) / rows_at_once;
+      MatrixXd taken = MatrixXd::Zero(lags, groups);
+      parallel_for_idle(static_cast<std::size_t>(groups), [&](std::size_t group) {
+        const Index g = static_cast<Index>(group), from = g * rows_at_once;
+        for (Index lag = 0; lag < lags; ++lag) {
+          const Index n = std::min(rows_at_once, count - from - lag);
+          if (n <= 0) break;
+          taken(lag, g) = s2 * w.middleRows(from, n).cwiseProduct(cw.middleRows(from + lag, n)).sum() +
+                          rest.middleRows(from, n).cwiseProduct(w.middleRows(from + lag, n)).sum();
+        }
+      });
+      for (Index lag = 0; lag < lags; ++lag)
+        covariance.lags[static_cast<std::size_t>(lag)] +=
+            taken.row(lag).sum() / static_cast<double>(covariance.samples);
     });
   }
 
@@ -97,29 +125,51 @@ class CorrelatedNoise {
       first += static_cast<Index>(count);
     }
   }
-  static Jacobian backwards(Jacobian x, const NoiseModel& noise) {
-    const auto order = static_cast<Index>(noise.coefficients.size());
-    for (Index t = x.rows(); t-- > 0;) {
-      const Index reach = std::min(order, x.rows() - 1 - t);
-      for (Index lag = 1; lag <= reach; ++lag) {
-        x.row(t) += noise.coefficients[static_cast<std::size_t>(lag - 1)] * x.row(t + lag);
+  using Rows = Jacobian::RowsBlockXpr;
+  static void backwards(Rows x, const NoiseModel& noise) {
+    for_columns_of(x, [&]<class Columns>(Columns columns) {
+      for (Index t = columns.rows(); t-- > 0;) {
+        RowOf<Columns> sum = columns.row(t);
+        const Index reach = std::min(order_of(noise), columns.rows() - 1 - t);
+        for (Index lag = 1; lag <= reach; ++lag)
+          sum += noise.coefficients[static_cast<std::size_t>(lag - 1)] * columns.row(t + lag);
+        columns.row(t) = sum;
       }
-    }
-    return x;
+    });
   }
-  static Jacobian forwards(Jacobian x, const NoiseModel& noise) {
-    const auto order = static_cast<Index>(noise.coefficients.size());
-    for (Index t = 0; t < x.rows(); ++t) {
-      const Index reach = std::min(order, t);
-      for (Index lag = 1; lag <= reach; ++lag) {
-        x.row(t) += noise.coefficients[static_cast<std::size_t>(lag - 1)] * x.row(t - lag);
+  static void forwards(Rows x, const NoiseModel& noise) {
+    for_columns_of(x, [&]<class Columns>(Columns columns) {
+      for (Index t = 0; t < columns.rows(); ++t) {
+        RowOf<Columns> sum = columns.row(t);
+        const Index reach = std::min(order_of(noise), t);
+        for (Index lag = 1; lag <= reach; ++lag)
+          sum += noise.coefficients[static_cast<std::size_t>(lag - 1)] * columns.row(t - lag);
+        columns.row(t) = sum;
       }
-    }
-    return x;
+    });
+  }
+  static Index order_of(const NoiseModel& noise) { return static_cast<Index>(noise.coefficients.size()); }
+
+  /// Number of columns that are filtered together: the values in a cache line.
+  static constexpr int together = 8;
+  /// A row of a group of columns. It is stored without a heap allocation.
+  template <class Columns>
+  using RowOf = Eigen::Matrix<double, 1, Columns::ColsAtCompileTime, Eigen::RowMajor, 1, together>;
+  /// Calls work(columns) for groups of columns. The columns are filtered independently.
+  template <class Work>
+  static void for_columns_of(Rows x, Work&& work) {
+    parallel_for_idle(static_cast<std::size_t>((x.cols() + together - 1) / together), [&](std::size_t group) {
+      const Index first = static_cast<Index>(group) * together;
+      if (first + together <= x.cols())
+        work(x.middleCols<together>(first));
+      else
+        work(x.rightCols(x.cols() - first));
+    });
   }
 
   const Jacobian& jacobian_;
   const std::vector<std::size_t>& rows_;
+  Jacobian filtered_;  ///< W after the first pass of the filter, or after both
 };
 
 /// Returns a square root of the covariance of the estimates in the coordinates y. The covariance is the root
@@ -181,15 +231,10 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
 
   // In the linear range of Huber's loss, a sample adds a constant to the gradient and nothing to the
   // curvature.
-  double curved = 0;
-  Jacobian bread = jacobian;
+  std::vector<bool> is_curved(rows);
   for (std::size_t i = 0; i < rows; ++i) {
-    if (std::abs(r[i]) <= huber_mm) {
-      ++curved;
-    } else {
-      bread.row(static_cast<Index>(i)).setZero();
-      r[i] = std::copysign(huber_mm, r[i]);
-    }
+    is_curved[i] = std::abs(r[i]) <= huber_mm;
+    if (!is_curved[i]) r[i] = std::copysign(huber_mm, r[i]);
   }
   std::vector<std::span<const double>> series;
   std::vector<std::size_t> counts;
@@ -203,28 +248,28 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   u.noise = fit_noise(observed);
 
   std::vector<Index> keep;
-  const double largest = n > 0 ? jacobian.colwise().norm().maxCoeff() : 0;
+  Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(n);
+  for (Index row = 0; row < jacobian.rows(); ++row) squares += jacobian.row(row).cwiseAbs2();
+  const double largest = n > 0 ? std::sqrt(squares.maxCoeff()) : 0;
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const FreeParameter& p = residuals.space().free()[at];
     const double tolerance = 1e-6 * std::max(1.0, std::abs(z[at]));
-    u.without_effect[at] = jacobian.col(i).norm() <= 1e-9 * largest;
+    u.without_effect[at] = std::sqrt(squares(i)) <= 1e-9 * largest;
     u.at_bound[at] = z[at] <= p.lower_z() + tolerance || z[at] >= p.upper_z() - tolerance;
     if (!u.without_effect[at] && !u.at_bound[at]) keep.push_back(i);
   }
   if (keep.empty()) return u;
-  const auto columns_of = [&](const Jacobian& all) {
-    MatrixXd columns(all.rows(), static_cast<Index>(keep.size()));
-    for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(keep[i]);
-    return columns;
-  };
-  const Coordinates coordinates = coordinates_of(columns_of(bread));
-  Jacobian columns = columns_of(jacobian) * coordinates.to_z;
+  const Coordinates coordinates = coordinates_of(triangular_factor(jacobian, keep, is_curved));
+  MatrixXd to_all = MatrixXd::Zero(n, coordinates.to_z.cols());
+  for (std::size_t i = 0; i < keep.size(); ++i)
+    to_all.row(keep[i]) = coordinates.to_z.row(static_cast<Index>(i));
+  Jacobian columns = jacobian * to_all;
   for (Index k = 0; k < columns.cols(); ++k) {
     // The computed effect of an unseen coordinate consists of rounding errors.
     if (coordinates.unseen[static_cast<std::size_t>(k)]) columns.col(k).setZero();
   }
-  const CorrelatedNoise correlated(columns, counts);
+  CorrelatedNoise correlated(columns, counts);
   MatrixXd meat = correlated.product(u.noise);
   // The residuals are smaller and less correlated than the noise, because the fit has absorbed part of the
   // noise. The correction for the absorbed part uses lags up to the order of the model plus this number.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/numbers.h"
+#include "base/parallel.h"
 #include "base/thread_budget.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
@@ -164,19 +165,25 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   StructureTrial chosen = choice.trials[choice.chosen];
   if (!std::isfinite(chosen.rmse_mm))
     return Failure("the prediction of the model is infinite or NaN for every start point of the fit");
-  result.structure = evidence_of(choice, ablation_of(fewer, choice, choice_options));
-  if (readings > enough_readings) {
-    chosen = fitted_to(std::move(chosen), result.records, record.drive);
-    result.warnings.push_back(chosen_by_means(fewer));
-  }
-  result.fitted = chosen.point.model;
-  result.fitted.name = "identified";
+  // Most of the fit to all readings runs on one thread, and the ablation does not need its result.
+  std::vector<WithoutIngredient> ablation;
+  parallel_for(2, options.threads, [&](std::size_t part) {
+    if (part == 0) {
+      ablation = ablation_of(fewer, choice, choice_options);
+      return;
+    }
+    if (readings > enough_readings) chosen = fitted_to(std::move(chosen), result.records, record.drive);
+    result.fitted = chosen.point.model;
+    result.fitted.name = "identified";
+    add_scores(chosen, whole, result);
+    add_estimates(chosen, result);
+  });
+  result.structure = evidence_of(choice, ablation);
   result.model = result.fitted;
   result.rmse_mm = chosen.rmse_mm;
   result.converged = chosen.converged;
   result.multistart = multistart_of(chosen.start_rmse_mm);
-  add_scores(chosen, whole, result);
-  add_estimates(chosen, result);
+  if (readings > enough_readings) result.warnings.push_back(chosen_by_means(fewer));
   add_warnings(result);
   if (two_stages) join_valve(logs, options, result);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "base/parallel.h"
@@ -56,8 +57,12 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   return list;
 }
 
+bool is_evaluated(const StructureTrial& trial) {
+  return !trial.block_losses_mm2.empty();
+}
+
 bool may_be_chosen(const StructureTrial& trial) {
-  return trial.invertible && trial.bounded;
+  return is_evaluated(trial) && trial.invertible && trial.bounded;
 }
 
 std::size_t best_of(const std::vector<StructureTrial>& trials) {
@@ -83,29 +88,44 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
 }
 
 /// If the loss of a trial is significantly lower than the loss of the selected trial, adds it to the choice
-/// and selects it.
-void offer(StructureTrial trial, StructureChoice& choice) {
+/// and selects it. Returns true if the trial is selected.
+bool offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
       !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
-    return;
+    return false;
   choice.chosen = choice.trials.size();
   choice.trials.push_back(std::move(trial));
+  return true;
 }
 
-/// Evaluates the chosen structure with an extension and offers the result to the choice. Pressure-dependent
-/// creep may have compensated for a missing extension. Therefore the extended structure is evaluated a second
-/// time without pressure-dependent creep.
-/// @param judged  function that adds the extension to a structure and evaluates the extended structure.
-void offer_extended(const std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>& judged,
-                    unsigned threads, StructureChoice& choice) {
-  const StructureTrial chosen = choice.trials[choice.chosen];
+/// Adds an extension to a structure and evaluates the extended structure. The second argument is the trial
+/// of the chosen structure.
+using Extension = std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>;
+
+/// Evaluates a chosen structure with an extension. Pressure-dependent creep may have compensated for a
+/// missing extension. Therefore the extended structure is evaluated a second time without
+/// pressure-dependent creep. Returns the better trial.
+StructureTrial extended_by(const Extension& extension, const StructureTrial& chosen) {
   std::vector<BaseStructure> structures{chosen.structure};
   if (chosen.structure.hinged_creep)
     structures.insert(structures.begin(), without(chosen.structure, Ingredient::pressure_dependent_creep));
-  std::vector<StructureTrial> extended(structures.size());
-  parallel_for(structures.size(), threads,
-               [&](std::size_t i) { extended[i] = judged(structures[i], chosen); });
-  offer(std::move(extended[simplest_of_the_best(extended)]), choice);
+  std::vector<StructureTrial> trials(structures.size());
+  parallel_for_idle(structures.size(), [&](std::size_t i) { trials[i] = extension(structures[i], chosen); });
+  return std::move(trials[simplest_of_the_best(trials)]);
+}
+
+/// Offers extensions of the chosen structure, one after the other. All extensions are evaluated at the same
+/// time. If one of them is selected, the extensions after it are evaluated again with the new choice.
+void offer_in_order(std::span<const Extension> extensions, unsigned threads, StructureChoice& choice) {
+  while (!extensions.empty()) {
+    const StructureTrial chosen = choice.trials[choice.chosen];
+    std::vector<StructureTrial> trials(extensions.size());
+    parallel_for(extensions.size(), threads,
+                 [&](std::size_t i) { trials[i] = extended_by(extensions[i], chosen); });
+    std::size_t offered = 0;
+    while (offered < trials.size() && !offer(std::move(trials[offered]), choice)) ++offered;
+    extensions = extensions.subspan(std::min(offered + 1, extensions.size()));
+  }
 }
 
 /// Tries the extensions of the chosen structure, one after the other.
@@ -114,28 +134,31 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
   const auto say = [&](const std::string& text) {
     if (options.progress) options.progress(text);
   };
-  const auto slower = [&](BaseStructure structure, const StructureTrial& chosen) {
-    structure.second_lag = true;
-    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
+  // An extension has more parameters. If it does not reduce the error of the fit to all readings, it does not
+  // reduce the error on held-out readings.
+  const auto below_mm = [](const StructureTrial& chosen) {
+    return (1 - limits::negligible_share) * chosen.rmse_mm;
   };
-  const auto limited = [&](BaseStructure structure, const StructureTrial& chosen) {
-    structure.second_lag = false;
-    structure.rate_limit = true;
-    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
-  };
-  const auto regulated = [&](const BaseStructure& structure, const StructureTrial& chosen) {
-    return judge.judge_regulated(structure, chosen);
-  };
+  std::vector<Extension> extensions;
   if (options.drive == Drive::command && options.dynamics) {
-    say("trying a second lag");
-    offer_extended(slower, options.threads, choice);
-    say("trying a rate limit");
-    offer_extended(limited, options.threads, choice);
+    extensions.emplace_back([&](BaseStructure structure, const StructureTrial& chosen) {
+      structure.second_lag = true;
+      return judge.judge_near(structure, chosen.ridge, chosen.numbers, below_mm(chosen));
+    });
+    extensions.emplace_back([&](BaseStructure structure, const StructureTrial& chosen) {
+      structure.second_lag = false;
+      structure.rate_limit = true;
+      return judge.judge_near(structure, chosen.ridge, chosen.numbers, below_mm(chosen));
+    });
   }
   if (options.drive == Drive::command) {
-    say("trying a regulator instead of the lag");
-    offer_extended(regulated, options.threads, choice);
+    extensions.emplace_back([&](const BaseStructure& structure, const StructureTrial& chosen) {
+      return judge.judge_regulated(structure, chosen, below_mm(chosen));
+    });
+    say(options.dynamics ? "trying a second lag, a rate limit and a regulator"
+                         : "trying a regulator instead of the lag");
   }
+  offer_in_order(extensions, options.threads, choice);
   if (options.dynamics) {
     say("trying a resonance");
     // The complete fit takes as long as all other trials together. The fast fit therefore decides whether the
@@ -148,24 +171,32 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
 }
 
 /// Adds linear modes to a structure, one after the other, while the held-out loss becomes significantly
-/// lower. Offers each extended structure.
+/// lower. Returns the extended structures that may be offered.
 /// @param form  trial of the structure without modes. If it has other dynamics, each mode must reduce the
-/// held-out error by at least 10 %, because modes can imitate small errors of the other components. A linear
-/// structure without modes has no dynamics, so a second mode is tried even if the first one alone does not
-/// lower the loss.
-void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoice& choice) {
+/// error by at least 10 %, because modes can imitate small errors of the other components. A linear structure
+/// without modes has no dynamics, so a second mode is tried even if the first one alone does not lower the
+/// loss. A linear structure is not evaluated if its fit to all readings has a larger error than the held-out
+/// error of the chosen structure.
+std::vector<StructureTrial> with_modes(const StructureJudge& judge, StructureTrial form, double ridge) {
+  constexpr double reduced = 1 - limits::equal_error_share;
+  const bool alone = form.structure.linear;
+  const double heldout_of_chosen_mm = form.heldout_rmse_mm;
+  std::vector<StructureTrial> found;
   for (std::size_t modes = 1; modes <= most_modes; ++modes) {
     BaseStructure structure = form.structure;
     structure.modes = modes;
-    StructureTrial extended = judge.judge_near(structure, choice.ridge, form.numbers);
-    const bool alone = form.structure.linear;
-    const bool is_lower =
-        is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2) &&
-        (alone || extended.heldout_rmse_mm < (1 - limits::equal_error_share) * form.heldout_rmse_mm);
-    if (alone || is_lower) offer(extended, choice);
-    if (!is_lower && !(alone && modes == 1)) return;
+    StructureTrial extended = judge.judge_near(structure, ridge, form.numbers,
+                                               alone ? heldout_of_chosen_mm : reduced * form.rmse_mm);
+    bool is_lower = alone && extended.rmse_mm < reduced * form.rmse_mm;
+    if (is_evaluated(extended) && is_evaluated(form)) {
+      is_lower = is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2) &&
+                 (alone || extended.heldout_rmse_mm < reduced * form.heldout_rmse_mm);
+    }
+    if (is_evaluated(extended) && (alone || is_lower)) found.push_back(extended);
+    if (!is_lower && !(alone && modes == 1)) break;
     form = std::move(extended);
   }
+  return found;
 }
 
 /// Tries linear modes in two forms: alone, and in parallel with the chosen structure. Neither form is tried
@@ -186,9 +217,22 @@ void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOption
                      .two_way = false,
                      .characteristic = false,
                      .linear = true};
-  offer_modes(judge, std::move(alone), choice);
   still.structure.resonance = false;
-  offer_modes(judge, std::move(still), choice);
+  const std::array forms{std::move(alone), std::move(still)};
+  std::array<std::vector<StructureTrial>, forms.size()> extended;
+  parallel_for(forms.size(), options.threads,
+               [&](std::size_t i) { extended[i] = with_modes(judge, forms[i], choice.ridge); });
+  for (std::vector<StructureTrial>& found : extended) {
+    for (StructureTrial& trial : found) offer(std::move(trial), choice);
+  }
+}
+
+/// Returns the trial of a candidate; nullptr if no candidate has this structure.
+const StructureTrial* candidate_with(const BaseStructure& structure, const StructureChoice& choice) {
+  const auto trials = std::span(choice.trials).first(choice.candidates);
+  const auto found = std::find_if(trials.begin(), trials.end(),
+                                  [&](const StructureTrial& t) { return t.structure == structure; });
+  return found == trials.end() ? nullptr : &*found;
 }
 
 /// Fits the structure of a trial.
@@ -247,6 +291,7 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
                                                   : judge.judge(structures[i], choice.ridge);
     say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " evaluated");
   });
+  choice.candidates = choice.trials.size();
   choice.chosen = simplest_of_the_best(choice.trials);
   const StructureTrial& simplest = choice.trials[choice.chosen];
   if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
@@ -283,6 +328,10 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   const StructureJudge judge(records, options);
   const StructureJudge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
+    if (const StructureTrial* known = candidate_with(ablation[i].trial.structure, choice)) {
+      ablation[i].trial = *known;
+      return;
+    }
     // If slow creep is removed, the chain of creep branches gets intermediate time constants. The finger may
     // have creep whose time constant lies between two time constants of the chain. Both branches then
     // represent this creep together, and the slower branch may count as slow creep.

@@ -53,13 +53,15 @@ struct StructureTrial {
   /// False: the published element has an inverse response, so this trial cannot be chosen.
   bool invertible = true;
   std::vector<double> start_rmse_mm;  ///< RMSE at the end of the search from each start point
-  /// Mean square error of each block, which was left out of the fit that predicts it.
+  /// Mean square error of each block, which was left out of the fit that predicts it. Empty: the trial was
+  /// not evaluated and cannot be chosen, because its fit to all readings is not better.
   std::vector<double> block_losses_mm2;
   double heldout_rmse_mm = 0;  ///< square root of the mean of the block losses
 };
 
 struct StructureChoice {
   std::vector<StructureTrial> trials;  ///< all trials; the simplest structure comes first
+  std::size_t candidates = 0;          ///< number of trials at the beginning that are candidates of the list
   std::size_t chosen = 0;
   double ridge = 0;
   std::size_t blocks = 0;

@@ -98,14 +98,15 @@ class PressureMemory {
  public:
   PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
                  double first_kpa, double peak_kpa)
-      : grid_(grid),
-        envelopes_(structure.envelopes ? numbers.envelope_bend : 0,
+      : envelopes_(structure.envelopes ? numbers.envelope_bend : 0,
                    structure.envelopes ? numbers.envelope_skew : 0, grid.largest_kpa),
         bouc_wen_(structure.hysteresis == HysteresisForm::bouc_wen),
         rates_{numbers.growing_per_kpa, numbers.growing_per_kpa * (1 - 2 * numbers.narrowing)},
         steepest_(steepest_state(numbers)) {
     if (!bouc_wen_) {
-      plays_.resize(grid.thresholds_kpa.size(), 0);
+      thresholds_kpa_ = Eigen::Map<const Eigen::ArrayXd>(
+          grid.thresholds_kpa.data(), static_cast<Eigen::Index>(grid.thresholds_kpa.size()));
+      plays_ = Eigen::ArrayXd::Zero(thresholds_kpa_.size());
       move(0, numbers.trained_kpa);
       move(numbers.trained_kpa, 0);
       untouched_ = plays_;
@@ -121,9 +122,7 @@ class PressureMemory {
       return;
     }
     const double seen = envelopes_.value(to);
-    for (std::size_t i = 0; i < plays_.size(); ++i) {
-      plays_[i] = std::clamp(plays_[i], seen - grid_.thresholds_kpa[i], seen + grid_.thresholds_kpa[i]);
-    }
+    plays_ = plays_.max(seen - thresholds_kpa_).min(seen + thresholds_kpa_);
   }
 
   /// Returns the value of the envelope function at a pressure [kPa]. This value is the input of the play
@@ -133,17 +132,18 @@ class PressureMemory {
   template <class Row>
   void write(double kpa, Row&& row) const {
     if (bouc_wen_) row(0) = steepest_ * kpa - g_;
-    for (std::size_t i = 0; i < plays_.size(); ++i) row(i) = plays_[i] - untouched_[i];
+    for (Eigen::Index i = 0; i < plays_.size(); ++i)
+      row(static_cast<std::size_t>(i)) = plays_(i) - untouched_(i);
   }
 
  private:
-  const StructureGrid& grid_;
   model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
   /// `plays_`: current states of the play operators [kPa]. `untouched_`: their states at zero pressure after
   /// a load to the largest pressure before the logs [kPa].
-  std::vector<double> plays_, untouched_;
+  Eigen::ArrayXd plays_, untouched_;
+  Eigen::ArrayXd thresholds_kpa_;  ///< thresholds of the play operators
   double g_ = 0;
   double steepest_;  ///< largest slope dg/dp of the hysteretic state g with respect to the pressure p
 };

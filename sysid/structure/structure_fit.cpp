@@ -1,15 +1,16 @@
 #include "sysid/structure/structure_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
 #include "model/envelope_map.h"
 #include "sysid/fitting/descent.h"
-#include "sysid/fitting/score.h"
 #include "sysid/logs/resampled_record.h"
 #include "sysid/structure/linear_modes.h"
 #include "sysid/structure/structure_columns.h"
@@ -78,10 +79,14 @@ class Search {
   };
 
   [[nodiscard]] State at(const NonlinearNumbers& numbers, const Eigen::VectorXd* near = nullptr) {
+    return at(columns_, numbers, near);
+  }
+  [[nodiscard]] State at(StructureColumns& columns, const NonlinearNumbers& numbers,
+                         const Eigen::VectorXd* near) const {
     State state;
     state.numbers = numbers;
     const ProjectionProblem problem{
-        columns_.at(numbers), layout_, readings_, grid_.largest_kpa, least_elastic_mm_per_kpa(grid_),
+        columns.at(numbers), layout_, readings_, grid_.largest_kpa, least_elastic_mm_per_kpa(grid_),
         options_.ridge};
     state.projection =
         project(problem, {structure_.characteristic ? numbers.curvature : 0, grid_.span_mm}, near);
@@ -105,18 +110,28 @@ class Search {
     Eigen::MatrixXd jacobian(state.residual.size(), n);
     NormalEquations normal;
     // The parameters that do not affect the pressure in the finger are changed first. During these changes,
-    // the pressure that was computed for the current state stays valid.
+    // the pressure that was computed for the current state stays valid. The other parameters need a new
+    // simulation each, so a second thread with its own columns computes every second one of them.
+    if (!beside_) beside_.emplace(columns_);
+    std::array<std::vector<Eigen::Index>, 2> parts;
+    std::size_t driving = 0;
     for (const bool drives : {false, true}) {
       for (Eigen::Index k = 0; k < n; ++k) {
+        if (coordinates_[static_cast<std::size_t>(k)].drives == drives)
+          parts[drives ? ++driving % 2 : 0].push_back(k);
+      }
+    }
+    parallel_for_idle(parts.size(), [&](std::size_t part) {
+      for (const Eigen::Index k : parts[part]) {
         const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
-        if (c.drives != drives) continue;
         const double t = c.get(state.numbers);
         const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
         NonlinearNumbers beside = state.numbers;
         c.set(beside, t + h);
-        jacobian.col(k) = (at(beside, &state.projection.weights).residual - state.residual) / h;
+        const State there = at(part == 0 ? columns_ : *beside_, beside, &state.projection.weights);
+        jacobian.col(k) = (there.residual - state.residual) / h;
       }
-    }
+    });
     const double sum = state.residual.squaredNorm();
     normal.curvature = jacobian.transpose() * jacobian / sum;
     normal.gradient = jacobian.transpose() * state.residual / sum;
@@ -246,6 +261,7 @@ class Search {
   Eigen::VectorXd readings_;
   std::vector<Coordinate> coordinates_;
   StructureColumns columns_;
+  std::optional<StructureColumns> beside_;  ///< columns for the second thread in normal()
 };
 
 std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, const StructureGrid& grid) {

@@ -54,14 +54,19 @@ StructureTrial StructureJudge::judge(const BaseStructure& structure, double ridg
                              : judge(fit(structure, ridge), ridge, fold_iterations);
 }
 
-StructureTrial StructureJudge::judge(const FittedStructure& whole, double ridge, int iterations) const {
+StructureTrial StructureJudge::trial_with(const FittedStructure& whole) const {
   StructureTrial trial = trial_of(whole.structure);
-  trial.ridge = ridge;
+  trial.ridge = whole.ridge;
   trial.numbers = whole.numbers;
   trial.point = point_of(whole, records_, options_.drive);
   trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
   trial.converged = whole.converged;
   trial.start_rmse_mm = whole.start_rmse_mm;
+  return trial;
+}
+
+StructureTrial StructureJudge::judge(const FittedStructure& whole, double ridge, int iterations) const {
+  StructureTrial trial = trial_with(whole);
   StructureFitOptions options = with_ridge(ridge);
   options.most_iterations = iterations;
   judge_held_out(trial, [&](const std::vector<Record>& rest) {
@@ -72,14 +77,17 @@ StructureTrial StructureJudge::judge(const FittedStructure& whole, double ridge,
 }
 
 StructureTrial StructureJudge::judge_near(const BaseStructure& structure, double ridge,
-                                          const NonlinearNumbers& numbers) const {
-  return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
+                                          const NonlinearNumbers& numbers, double below_mm) const {
+  const FittedStructure whole = fit(structure, ridge, &numbers);
+  if (!(std::sqrt(whole.mean_square_mm2) < below_mm)) return trial_with(whole);
+  return judge(whole, ridge, fold_iterations);
 }
 
-StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
+StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const StructureTrial& lagging,
+                                               double below_mm) const {
   structure.regulator = true;
   structure.second_lag = structure.rate_limit = false;
-  return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
+  return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_), below_mm);
 }
 
 bool StructureJudge::is_noise(const StructureTrial& trial) const {

@@ -3,6 +3,7 @@
 // ablation_of() use the class StructureJudge.
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "sysid/fitting/held_out.h"
@@ -40,11 +41,15 @@ class StructureJudge {
   /// parameters of `whole`. 0: the nonlinear parameters stay fixed.
   [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const;
   /// Evaluates a structure. The fit starts from the nonlinear parameters `numbers` of a similar structure.
+  /// @param below_mm  if the RMSE of the fit to all readings is not below this limit, the structure is not
+  /// evaluated on held-out blocks.
   [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
-                                          const NonlinearNumbers& numbers) const;
+                                          const NonlinearNumbers& numbers,
+                                          double below_mm = std::numeric_limits<double>::infinity()) const;
   /// Evaluates a structure in which a regulator replaces the lag. The fit starts at the parameters of the
   /// trial with the lag.
-  [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const;
+  [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging,
+                                               double below_mm) const;
   /// Returns true if the held-out error of a trial is at most 1.1 times the noise of the readings (the lowest
   /// noise of all records). No further component can then reduce this error significantly.
   [[nodiscard]] bool is_noise(const StructureTrial& trial) const;
@@ -53,6 +58,8 @@ class StructureJudge {
   [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const;
 
  private:
+  /// Returns the trial of a fit, without an evaluation on held-out blocks.
+  [[nodiscard]] StructureTrial trial_with(const FittedStructure& whole) const;
   [[nodiscard]] StructureTrial judge_published(const BaseStructure& structure) const;
   void judge_held_out(StructureTrial& trial, const Refit& refit) const;
 

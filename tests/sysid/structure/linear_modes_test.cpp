@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "model/blocks/linear_modes.h"
@@ -143,6 +144,24 @@ TEST(LinearModes, ACompleteModelLeavesOnlyNoise) {
   const StructureTrial complete = judge.judge_near(extended, 1e-5, still.numbers);
   EXPECT_LT(complete.rmse_mm, 1.1 * noise_mm);
   EXPECT_TRUE(judge.is_noise(complete));
+  const StructureTrial worse = judge.judge_near(extended, 1e-5, still.numbers, 0.9 * complete.rmse_mm);
+  EXPECT_TRUE(worse.block_losses_mm2.empty());
+  EXPECT_DOUBLE_EQ(worse.rmse_mm, complete.rmse_mm);
+}
+
+TEST(LinearModes, ACandidateWithoutTheComponentIsNotFittedAgain) {
+  const std::vector<Record> records{random_steps(with_modes({0.3, 1.2, 0.1, -0.1, 0.2}), 4)};
+  StructureChoice choice;
+  choice.trials.resize(2);
+  choice.trials[0].structure = {.characteristic = false};
+  choice.trials[0].heldout_rmse_mm = 123;
+  choice.trials[1].structure = {.characteristic = true};
+  choice.candidates = 2;
+  choice.chosen = 1;
+  constexpr std::array removed{Ingredient::characteristic};
+  const std::vector<WithoutIngredient> ablation = ablation_of(records, choice, {}, removed);
+  ASSERT_EQ(ablation.size(), 1U);
+  EXPECT_EQ(ablation[0].trial.heldout_rmse_mm, 123);
 }
 
 TEST(LinearModes, ColumnsReproduceTheModelResponse) {
