@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "model/envelope_map.h"
-#include "model/exponential.h"
 #include "model/second_order.h"
 #include "model/segment.h"
 #include "sysid/fitting/hysteresis_step.h"
@@ -15,7 +14,6 @@ namespace softgrip::sysid {
 namespace {
 
 using Segment = model::Segment<double>;
-using Weights = model::ExponentialWeights<double>;
 
 /// Returns true if `a` and `b` have equal parameters of delay, lags, rate limit, regulator and initial jump.
 /// The pressure in the finger is then equal for both.
@@ -26,62 +24,6 @@ bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
          a.jumped_from_kpa == b.jumped_from_kpa && a.overlap_kpa == b.overlap_kpa &&
          a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
 }
-
-/// Creep branches that have the same input signal. Two branches are computed at a time.
-class Ladder {
- public:
-  Ladder(const std::vector<double>& time_constants_s, double at)
-      : time_constants_s_(time_constants_s), x_((time_constants_s.size() + 1) / 2, Pair{at, at}) {}
-
-  void step(const Segment& in) {
-    if (x_.empty() || in.duration_s <= 0) return;
-    const PairWeights* w = weights(in.duration_s);
-    const double begin = in.begin, rise = in.end - in.begin, bend = in.bend();
-    for (Pair& x : x_) {
-      x = x - w->loss * x + w->begin * begin + w->rise * rise + w->bend * bend;
-      ++w;
-    }
-  }
-  [[nodiscard]] double value(std::size_t branch) const { return x_[branch / 2][branch % 2]; }
-
- private:
-  using Pair [[gnu::vector_size(16)]] = double;
-  /// Weights with which the state at the end of a step is computed, for two branches; see
-  /// model::ExponentialWeights.
-  struct PairWeights {
-    Pair loss{}, begin{}, rise{}, bend{};
-  };
-  /// Weights for a step duration that was used recently. A step lasts one sampling interval, or one of the
-  /// parts into which a delay divides the interval.
-  struct Kept {
-    double duration_s = 0;
-    std::vector<PairWeights> pairs;
-  };
-
-  const PairWeights* weights(double duration_s) {
-    for (const Kept& kept : kept_) {
-      if (kept.duration_s == duration_s) return kept.pairs.data();
-    }
-    Kept& kept = kept_[next_++ % kept_.size()];
-    kept.duration_s = duration_s;
-    kept.pairs.resize(x_.size());
-    for (std::size_t i = 0; i < time_constants_s_.size(); ++i) {
-      const double rate = 1 / time_constants_s_[i];
-      const Weights w = Weights::make(duration_s, rate, rate);
-      PairWeights& pair = kept.pairs[i / 2];
-      pair.loss[i % 2] = w.loss;
-      pair.begin[i % 2] = w.end_begin;
-      pair.rise[i % 2] = w.end_rise;
-      pair.bend[i % 2] = w.end_bend;
-    }
-    return kept.pairs.data();
-  }
-
-  const std::vector<double>& time_constants_s_;
-  std::vector<Pair> x_;
-  std::array<Kept, 4> kept_;
-  std::size_t next_ = 0;
-};
 
 /// Returns the part of a segment that lies above a threshold pressure (hinge). The pressures of the result
 /// are relative to the threshold.
@@ -209,7 +151,9 @@ StructureColumns::StructureColumns(const std::vector<Record>& records, const Bas
       grid_(grid),
       layout_(structure, grid, records),
       first_row_(first_rows_of(records)),
-      columns_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_of(records).size()), layout_.count())) {
+      columns_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_of(records).size()), layout_.count())),
+      ladder_weights_(records.size(), LadderWeights(grid.ladder_s)),
+      hinge_weights_(records.size(), LadderWeights(grid.hinge_ladder_s)) {
   write_own();
 }
 
@@ -239,10 +183,10 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
 /// the structure has envelopes, write_hysteresis() overwrites the column of the elastic gain.
 void StructureColumns::write_driven(std::size_t r) {
   const DrivenPressure& driven = driven_[r];
-  Ladder ladder(grid_.ladder_s, driven.first_kpa);
+  Ladder ladder(ladder_weights_[r], driven.first_kpa);
   std::vector<Ladder> hinged;
   for (std::size_t h = 0; h < layout_.hinges(); ++h)
-    hinged.emplace_back(grid_.hinge_ladder_s, std::max(driven.first_kpa - grid_.hinges_kpa[h], 0.0));
+    hinged.emplace_back(hinge_weights_[r], std::max(driven.first_kpa - grid_.hinges_kpa[h], 0.0));
   auto row = static_cast<Eigen::Index>(first_row_[r]);
   std::size_t segment = 0;
   for (std::size_t i = 0; i < driven.until.size(); ++i) {

@@ -9,6 +9,7 @@
 
 #include "sysid/logs/record.h"
 #include "sysid/structure/driven_pressure.h"
+#include "sysid/structure/ladder.h"
 #include "sysid/structure/structure.h"
 #include "sysid/structure/structure_grid.h"
 
@@ -112,6 +113,8 @@ class StructureColumns {
   Eigen::MatrixXd columns_;
   NonlinearNumbers numbers_;            ///< parameters with which columns_ was computed
   std::vector<DrivenPressure> driven_;  ///< pressure of each record; empty before the first call of at()
+  /// For each record, the weights of its creep branches and of those above a hinge.
+  std::vector<LadderWeights> ladder_weights_, hinge_weights_;
 };
 
 /// Returns the matrix of StructureColumns for a single set of parameters.
