@@ -156,7 +156,11 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
           felt ? covariance(i, i) * square(place.by) + healthy_variance(healthy, effect, place.number) : 0;
       all[e].numbers.push_back(
           within(effect.effect.numbers[place.number], interval(effect.numbers[place.number], variance)));
-      if (felt) size_slopes(i) = size_with(readings, moved(found, place)[e]) - size;
+      // A step of the gain of the effect changes the gain within the spread by the opposite amount. The sum
+      // of both would seem to be known exactly.
+      if (felt)
+        size_slopes(i) = is_sized_by_both_gains(effect) ? 100 * place.by
+                                                        : size_with(readings, moved(found, place)[e]) - size;
     }
     const double size_variance = size_slopes.dot(covariance * size_slopes);
     if (size_variance > 0)

@@ -28,6 +28,10 @@ double largest_of(const Binned& series) {
 
 }  // namespace
 
+bool is_sized_by_both_gains(const FittedEffect& effect) {
+  return effect.numbers.size() == 1 && number(effect, "gain_change") != nullptr;
+}
+
 double at_full_pressure(const LaterReadings& readings, const Binned& added) {
   const std::vector<Record>& records = readings.records();
   double largest_kpa = 0, sum = 0, count = 0;
@@ -44,10 +48,8 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  // If only the gain has changed, the reported size is the sum of two gains. The first one is the gain of the
-  // effect. The second one is the gain within the spread of the healthy logs, which is fitted separately.
-  if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
-    return {"gain", 100 * (*gain + readings.nuisance({effect}).gain), "%"};
+  if (is_sized_by_both_gains(effect))
+    return {"gain", 100 * (effect.numbers.front() + readings.nuisance({effect}).gain), "%"};
   const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));
   const auto sized = [&](double value) {
     return ChangeSize{std::string(size.what), size.factor * value, std::string(size.unit)};

@@ -9,6 +9,11 @@ namespace softgrip::sysid {
 /// value; 0 if there is no such bin.
 [[nodiscard]] double at_full_pressure(const LaterReadings& readings, const Binned& added);
 
+/// Returns true if the size of an effect is the sum of two gains: the gain of the effect, and the gain within
+/// the spread of the healthy logs, which is fitted separately. This is the case if the effect only changes
+/// the gain.
+[[nodiscard]] bool is_sized_by_both_gains(const FittedEffect& effect);
+
 /// Returns the size of an effect.
 /// @param full_pressure_mm  change of the displacement at full pressure that the effect causes [mm].
 [[nodiscard]] ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect,

@@ -135,6 +135,9 @@ TEST(Change, GainChangeIsReportedAsAgeingInPercent) {
   EXPECT_EQ(d.causes[0].id, "ageing");
   EXPECT_EQ(d.causes[0].size.unit, "%");
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
+  ASSERT_TRUE(d.causes[0].intervals.size);
+  EXPECT_LT(d.causes[0].intervals.size->lower, 2.8);
+  EXPECT_GT(d.causes[0].intervals.size->upper, 3.2);
   // The result lists all tested causes. It states the reason for each rejected cause.
   const JudgedChange& judged = d.readings.back();
   EXPECT_EQ(judged.healthy_runs, logs_of({}, 1).size());
