@@ -4,9 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/statistics.h"
+#include "sysid/changes/base_candidate.h"
 #include "sysid/changes/base_prediction.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/regulator_fit.h"
@@ -15,10 +18,6 @@
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
-#include "sysid/structure/linear_modes.h"
-#include "sysid/structure/published_element.h"
-#include "sysid/structure/structure_fit.h"
-#include "sysid/structure/structure_model.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -33,15 +32,6 @@ constexpr double finger_memory_s = 0.4;
 /// accurately from day to day than these limits.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
-
-/// A model structure that may become the baseline model, with the function that fits its parameters.
-struct Candidate {
-  std::string description;
-  std::optional<Regulator> regulator;
-  /// Fits the model to records whose drive is the output of the regulator. A model without blocks predicts
-  /// the output of the regulator, or 0 if there is no regulator.
-  std::function<FitPoint(const std::vector<Record>&)> fit;
-};
 
 std::vector<Record> behind(const std::optional<Regulator>& regulator, const std::vector<Record>& records) {
   if (!regulator) return records;
@@ -62,87 +52,6 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-/// Fits a candidate to all cross-validation units except one. Returns its residual for all records, averaged
-/// over bins.
-/// @param model  receives the fitted model.
-Binned left_by(const Candidate& candidate, const std::vector<Record>& records, const Units& units,
-               std::size_t unit, double bin_s, model::Model& model) {
-  std::vector<std::size_t> kept;
-  const FitPoint point = candidate.fit(units.without(records, unit, &kept));
-  model = point.model;
-  std::vector<StartState> starts(records.size());
-  if (!model.blocks.empty()) {
-    for (std::size_t k = 0; k < kept.size(); ++k) starts[kept[k]] = point.starts[k];
-    for (std::size_t r = 0; r < records.size(); ++r) {
-      if (std::find(kept.begin(), kept.end(), r) == kept.end()) starts[r] = start_of(model, records[r]);
-    }
-  }
-  Binned left;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::vector<double> prediction = model.blocks.empty()
-                                               ? without_model(candidate.regulator, records[r])
-                                               : predict(model, records[r], starts[r]);
-    left.push_back(binned(records[r], residual(records[r], prediction), bin_s));
-  }
-  return left;
-}
-
-BaseStructure play_structure(Drive drive, std::size_t modes = 0) {
-  return {.hysteresis = HysteresisForm::play,
-          .delay = drive == Drive::command,
-          .hinged_creep = true,
-          .modes = modes};
-}
-
-/// Returns the candidate with this structure. Its input is the drive of the records that it is fitted to.
-Candidate candidate_of(const BaseStructure& structure, Drive drive) {
-  return {description_of(structure), {}, [structure, drive](const std::vector<Record>& driven) {
-            return point_of(fit_form(driven, structure, grid_for(driven), {}), driven, drive);
-          }};
-}
-
-/// Returns true if the start point of a linear mode already reduces the mean square error of play operators
-/// and creep by more than 10 %. A complete fit of the mode is then worth its time.
-bool may_have_a_mode(const std::vector<Record>& records, Drive drive) {
-  const StructureFitOptions options;
-  const std::vector<Record> few = with_fewer_readings(records, options.most_rows);
-  const StructureGrid grid = grid_for(few);
-  const FittedStructure still = fit_form(few, play_structure(drive), grid, options);
-  return starts_of_next_mode(few, play_structure(drive, 1), grid, still.numbers, options)
-             .front()
-             .mean_square_mm2 < (1 - limits::equal_error_share) * still.mean_square_mm2;
-}
-
-std::vector<Candidate> candidates(const std::vector<Record>& records, const Base& base,
-                                  const BaseOptions& options) {
-  const auto nothing = [](const std::vector<Record>&) { return FitPoint{}; };
-  if (base.judged == Judged::pressure)
-    return {{"filter bank", {}, nothing},
-            {"a regulator", fit_regulator(records, base.largest_kpa, ReadBy::gauge), nothing}};
-  const bool command = base.drive == Drive::command;
-  const Candidate play = candidate_of(play_structure(base.drive), base.drive);
-  std::vector<Candidate> all{
-      play,
-      {"Bouc-Wen and two creep branches",
-       {},
-       [&options, drive = base.drive](const std::vector<Record>& driven) {
-         return fit_published(driven, drive, limits::repeated_starts, options.seed).point;
-       }}};
-  if (command) {
-    const Regulator regulator = fit_regulator(records, base.largest_kpa);
-    all.push_back({"a regulator, " + play.description, regulator, play.fit});
-  }
-  if (may_have_a_mode(records, base.drive))
-    all.push_back(candidate_of(play_structure(base.drive, 1), base.drive));
-  if (options.given) {
-    const model::Model model = deterministic_part(*options.given, base.drive);
-    all.push_back({"the given model", {}, [model](const std::vector<Record>& driven) {
-                     return FitPoint{model, rest_starts(model, driven)};
-                   }});
-  }
-  return all;
-}
-
 /// Returns the kinds of filter banks that are tried. If the input is the command, the filter bank may have to
 /// represent the valve in addition to the finger.
 std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
@@ -160,19 +69,23 @@ struct Fitted {
 };
 std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector<Record>& records,
                             const Base& base, unsigned threads) {
-  std::vector<Fitted> fitted(all.size());
-  const std::size_t folds = base.units.count() + 1;
-  for (std::size_t c = 0; c < all.size(); ++c) {
-    fitted[c].driven = behind(all[c].regulator, records);
-    fitted[c].left.resize(folds);
-  }
-  parallel_for(all.size() * folds, threads, [&](std::size_t task) {
-    const std::size_t c = task / folds, unit = task % folds;
-    model::Model model;
-    fitted[c].left[unit] = left_by(all[c], fitted[c].driven, base.units, unit, base.bin_s, model);
-    if (unit == base.units.count()) fitted[c].model = std::move(model);
+  std::vector<Fitted> fits(all.size());
+  std::vector<FittedParameters> whole(all.size());
+  const std::size_t units = base.units.count();
+  std::vector<std::size_t> every(records.size());
+  std::iota(every.begin(), every.end(), std::size_t{0});
+  parallel_for(all.size(), threads, [&](std::size_t c) {
+    fits[c].driven = behind(all[c].regulator, records);
+    whole[c] = all[c].fit(fits[c].driven);
+    fits[c].model = whole[c].point.model;
+    fits[c].left.resize(units + 1);
+    fits[c].left[units] = left_by(all[c], whole[c].point, every, fits[c].driven, base.bin_s);
   });
-  return fitted;
+  parallel_for(all.size() * units, threads, [&](std::size_t task) {
+    const std::size_t c = task / units, unit = task % units;
+    fits[c].left[unit] = left_without(all[c], whole[c], fits[c].driven, base.units, unit, base.bin_s);
+  });
+  return fits;
 }
 
 /// Selects the baseline model. The first candidate is the default. Each further candidate replaces the best
@@ -280,11 +193,11 @@ double finger_bin_s(const std::vector<Record>& records) {
 
 Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s, unsigned threads) {
   const Units units(records);
-  const Candidate play = candidate_of(play_structure(drive), drive);
+  const Candidate play = play_candidate(drive);
+  const FittedParameters whole = play.fit(records);
   std::vector<Binned> fitted_without(units.count());
   parallel_for(units.count(), threads, [&](std::size_t unit) {
-    model::Model model;
-    fitted_without[unit] = left_by(play, records, units, unit, bin_s, model);
+    fitted_without[unit] = left_without(play, whole, records, units, unit, bin_s);
   });
   Binned left = fitted_without.front();
   for (std::size_t r = 0; r < left.size(); ++r) {
@@ -320,7 +233,7 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
     base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   }
   base.units = Units(records);
-  choose(base, candidates(records, base, options), records, options);
+  choose(base, candidates(records, judged, drive, base.largest_kpa, options), records, options);
   Binned peak_rate;
   for (const Record& record : records) peak_rate.push_back(peak_rate_of(record, base.bin_s));
   base.whitener = whitener_of(base.left, peak_rate, order_for(base));
