@@ -67,7 +67,7 @@ struct Fitted {
   model::Model model;  ///< model that was fitted to all records
   LeftByUnit left;     ///< residuals of each fit
 };
-std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector<Record>& records,
+std::vector<Fitted> fit_all(const std::vector<BaseCandidate>& all, const std::vector<Record>& records,
                             const Base& base, unsigned threads) {
   std::vector<Fitted> fits(all.size());
   std::vector<FittedParameters> whole(all.size());
@@ -91,7 +91,7 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
 /// Selects the baseline model. The first candidate is the default. Each further candidate replaces the best
 /// earlier one only if it predicts left-out runs significantly better. The regulator of a candidate is fitted
 /// to all runs. The cross-validation changes only the other parameters of the candidate.
-void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
+void choose(Base& base, const std::vector<BaseCandidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
   const std::vector<Fitted> fitted = fit_all(all, records, base, options.threads);
@@ -193,7 +193,7 @@ double finger_bin_s(const std::vector<Record>& records) {
 
 Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s, unsigned threads) {
   const Units units(records);
-  const Candidate play = play_candidate(drive);
+  const BaseCandidate play = play_candidate(drive);
   const FittedParameters whole = play.fit(records);
   std::vector<Binned> fitted_without(units.count());
   parallel_for(units.count(), threads, [&](std::size_t unit) {
@@ -233,7 +233,7 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
     base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   }
   base.units = Units(records);
-  choose(base, candidates(records, judged, drive, base.largest_kpa, options), records, options);
+  choose(base, base_candidates(records, judged, drive, base.largest_kpa, options), records, options);
   Binned peak_rate;
   for (const Record& record : records) peak_rate.push_back(peak_rate_of(record, base.bin_s));
   base.whitener = whitener_of(base.left, peak_rate, order_for(base));

@@ -48,7 +48,7 @@ FittedParameters fitted(const BaseStructure& structure, const std::vector<Record
 }
 
 /// Returns the candidate with this structure. Its input is the drive of the records that it is fitted to.
-Candidate candidate_of(const BaseStructure& structure, Drive drive) {
+BaseCandidate candidate_of(const BaseStructure& structure, Drive drive) {
   return {description_of(structure),
           {},
           [=](const std::vector<Record>& driven) { return fitted(structure, driven, drive); },
@@ -74,12 +74,12 @@ bool may_have_a_mode(const std::vector<Record>& records, Drive drive, const Fitt
 
 }  // namespace
 
-Candidate play_candidate(Drive drive) {
+BaseCandidate play_candidate(Drive drive) {
   return candidate_of(play_structure(drive), drive);
 }
 
-std::vector<Candidate> candidates(const std::vector<Record>& records, Judged judged, Drive drive,
-                                  double largest_kpa, const BaseOptions& options) {
+std::vector<BaseCandidate> base_candidates(const std::vector<Record>& records, Judged judged, Drive drive,
+                                           double largest_kpa, const BaseOptions& options) {
   if (judged == Judged::pressure) {
     const auto nothing = [](const std::vector<Record>&) { return FittedParameters{}; };
     const auto again = [](const std::vector<Record>&, const FittedParameters&) { return FitPoint{}; };
@@ -87,9 +87,9 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, Judged jud
             {"a regulator", fit_regulator(records, largest_kpa, ReadBy::gauge), nothing, again}};
   }
   const bool command = drive == Drive::command;
-  Candidate play = candidate_of(play_structure(drive), drive);
+  BaseCandidate play = candidate_of(play_structure(drive), drive);
   const FittedParameters still = play.fit(records);
-  std::vector<Candidate> all{
+  std::vector<BaseCandidate> all{
       play,
       {"Bouc-Wen and two creep branches",
        {},
@@ -127,7 +127,7 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, Judged jud
   return all;
 }
 
-Binned left_by(const Candidate& candidate, const FitPoint& point, const std::vector<std::size_t>& kept,
+Binned left_by(const BaseCandidate& candidate, const FitPoint& point, const std::vector<std::size_t>& kept,
                const std::vector<Record>& records, double bin_s) {
   const model::Model& model = point.model;
   std::vector<StartState> starts(records.size());
@@ -147,7 +147,7 @@ Binned left_by(const Candidate& candidate, const FitPoint& point, const std::vec
   return left;
 }
 
-Binned left_without(const Candidate& candidate, const FittedParameters& whole,
+Binned left_without(const BaseCandidate& candidate, const FittedParameters& whole,
                     const std::vector<Record>& records, const Units& units, std::size_t unit, double bin_s) {
   std::vector<std::size_t> kept;
   const std::vector<Record> rest = units.without(records, unit, &kept);

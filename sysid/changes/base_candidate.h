@@ -22,7 +22,7 @@ struct FittedParameters {
 /// A model structure that may become the baseline model, with the functions that fit its parameters. They
 /// fit the model to records whose drive is the output of the regulator. A model without blocks predicts the
 /// output of the regulator, or 0 if there is no regulator.
-struct Candidate {
+struct BaseCandidate {
   std::string description;
   std::optional<Regulator> regulator;
   /// Fits the model to all records.
@@ -33,20 +33,21 @@ struct Candidate {
 
 /// Returns the candidate with play operators and creep. Its input is the drive of the records that it is
 /// fitted to.
-[[nodiscard]] Candidate play_candidate(Drive drive);
+[[nodiscard]] BaseCandidate play_candidate(Drive drive);
 
 /// Returns the candidates for the baseline model. The first one is the default.
-[[nodiscard]] std::vector<Candidate> candidates(const std::vector<Record>& records, Judged judged,
-                                                Drive drive, double largest_kpa, const BaseOptions& options);
+[[nodiscard]] std::vector<BaseCandidate> base_candidates(const std::vector<Record>& records, Judged judged,
+                                                         Drive drive, double largest_kpa,
+                                                         const BaseOptions& options);
 
 /// Returns the residual of a fitted candidate for all records, averaged over bins.
 /// @param kept  for each record of the fit, its index in `records`.
-[[nodiscard]] Binned left_by(const Candidate& candidate, const FitPoint& point,
+[[nodiscard]] Binned left_by(const BaseCandidate& candidate, const FitPoint& point,
                              const std::vector<std::size_t>& kept, const std::vector<Record>& records,
                              double bin_s);
 /// Fits a candidate to all cross-validation units except one, and returns its residual for all records,
 /// averaged over bins. The fit starts at the parameters that were fitted to all records.
-[[nodiscard]] Binned left_without(const Candidate& candidate, const FittedParameters& whole,
+[[nodiscard]] Binned left_without(const BaseCandidate& candidate, const FittedParameters& whole,
                                   const std::vector<Record>& records, const Units& units, std::size_t unit,
                                   double bin_s);
 

@@ -31,14 +31,14 @@ TEST(BaseCandidate, FitWithoutARunAgreesWithAFitFromTheDefaultStarts) {
   const std::vector<Record> records = make_records(logs, {});
   const Units units(records);
   std::size_t compared = 0;
-  for (const Candidate& candidate :
-       candidates(records, Judged::displacement, Drive::command, records[0].largest_kpa, {})) {
+  for (const BaseCandidate& candidate :
+       base_candidates(records, Judged::displacement, Drive::command, records[0].largest_kpa, {})) {
     if (candidate.regulator) continue;
     const FittedParameters whole = candidate.fit(records);
     for (std::size_t unit = 0; unit < units.count(); ++unit) {
       std::vector<std::size_t> kept;
       const std::vector<Record> rest = units.without(records, unit, &kept);
-      const Candidate play = play_candidate(Drive::command);
+      const BaseCandidate play = play_candidate(Drive::command);
       const bool is_play = candidate.description == play.description;
       const FitPoint again = is_play ? play.fit(rest).point : candidate.fit(rest).point;
       const double near_mm =
@@ -53,8 +53,8 @@ TEST(BaseCandidate, FitWithoutARunAgreesWithAFitFromTheDefaultStarts) {
 
 TEST(BaseCandidate, PressureHasAFilterBankAndARegulator) {
   const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
-  const std::vector<Candidate> all =
-      candidates(records, Judged::pressure, Drive::command, records[0].largest_kpa, {});
+  const std::vector<BaseCandidate> all =
+      base_candidates(records, Judged::pressure, Drive::command, records[0].largest_kpa, {});
   ASSERT_EQ(all.size(), 2U);
   EXPECT_FALSE(all[0].regulator);
   EXPECT_TRUE(all[1].regulator);
