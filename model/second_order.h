@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "model/number.h"
+#include "model/recent_durations.h"
 #include "model/segment.h"
 
 namespace softgrip::model {
@@ -92,21 +93,10 @@ class SecondOrder {
   /// Distance of d^2 from 1 below which the two poles are treated as one double pole.
   static constexpr double double_pole = 1e-6;
 
-  /// The decay for a duration that occurred recently. Durations occur repeatedly: the sampling interval, and
-  /// the pieces into which a delay divides it.
-  struct Kept {
-    T duration_s{0.0};
-    Decay decay{T(1.0), T(0.0)};
-  };
-
   [[nodiscard]] const Decay& decay_after(const T& dt) {
-    for (const Kept& kept : kept_) {
-      if (same(kept.duration_s, dt)) return kept.decay;
-    }
-    Kept& kept = kept_[next_];
-    next_ = (next_ + 1) % kept_.size();
-    kept = {dt, new_decay(dt)};
-    return kept.decay;
+    const auto [slot, is_new] = durations_.at(dt);
+    if (is_new) decays_[slot] = new_decay(dt);
+    return decays_[slot];
   }
 
   [[nodiscard]] Decay new_decay(const T& dt) const {
@@ -154,8 +144,8 @@ class SecondOrder {
   T damping_;
   T value_{0.0};
   T rate_{0.0};
-  std::array<Kept, 3> kept_{};
-  std::size_t next_ = 0;
+  RecentDurations<T> durations_;
+  std::array<Decay, RecentDurations<T>::slots> decays_{};
 };
 
 }  // namespace softgrip::model

@@ -1,14 +1,13 @@
 #pragma once
-// Stores response weights for durations that occur repeatedly: the nominal sample time, and the pieces into
-// which a delay divides the sample time.
+// Stores response weights for durations that occur repeatedly.
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "model/exponential.h"
-#include "model/number.h"
+#include "model/recent_durations.h"
 
 namespace softgrip::model {
 
@@ -17,38 +16,28 @@ namespace softgrip::model {
 template <class T>
 class WeightCache {
  public:
-  explicit WeightCache(std::size_t branches) : branches_(branches), weights_(branches * slots) {}
+  explicit WeightCache(std::size_t branches)
+      : branches_(branches), weights_(branches * RecentDurations<T>::slots) {}
 
   /// Returns the weights for a duration. If the duration is not stored, `fill(span)` computes the weights of
   /// all branches.
   template <class Fill>
   const ExponentialWeights<T>* at(const T& duration_s, Fill&& fill) {
-    for (std::size_t slot = 0; slot < used_; ++slot) {
-      if (same(durations_[slot], duration_s)) return &weights_[slot * branches_];
-    }
-    const std::size_t slot = next_;
-    next_ = (next_ + 1) % slots;
-    if (used_ < slots) ++used_;
-    durations_[slot] = duration_s;
-    fill(std::span(weights_).subspan(slot * branches_, branches_));
+    const auto [slot, is_new] = durations_.at(duration_s);
+    if (is_new) fill(std::span(weights_).subspan(slot * branches_, branches_));
     return &weights_[slot * branches_];
   }
 
   /// Returns the stored weights for a duration; nullptr if the duration is not stored. Does not store
   /// anything.
   [[nodiscard]] const ExponentialWeights<T>* find(const T& duration_s) const {
-    for (std::size_t slot = 0; slot < used_; ++slot) {
-      if (same(durations_[slot], duration_s)) return &weights_[slot * branches_];
-    }
-    return nullptr;
+    const std::optional<std::size_t> slot = durations_.find(duration_s);
+    return slot ? &weights_[*slot * branches_] : nullptr;
   }
 
  private:
-  static constexpr std::size_t slots = 4;
   std::size_t branches_;
-  std::size_t used_ = 0;
-  std::size_t next_ = 0;
-  std::array<T, slots> durations_{};
+  RecentDurations<T> durations_;
   std::vector<ExponentialWeights<T>> weights_;
 };
 

@@ -78,16 +78,19 @@ def variation_text():
             f"jitter of the sampling {percent(rig_runs.JITTER)} of the interval.")
 
 
-def meaning(values):
-    cases = by_healthy(values)
-    healthy = 3 if cases.get(3) else values["healthy"][0]
-    rows = {sentence: of(count, total) for sentence, count, total in rig_judge.counts(cases[healthy])}
-    repeats = [case for case in cases[healthy] if case["group"] in rig_judge.REPEATS and case["outcome"] != "failed"]
+def meaning_of(healthy, cases):
+    rows = {sentence: of(count, total) for sentence, count, total in rig_judge.counts(cases)}
+    repeats = [case for case in cases if case["group"] in rig_judge.REPEATS and case["outcome"] != "failed"]
     changed = sum(case["outcome"] == "false alarm" for case in repeats)
     return (f"With {healthy} healthy run{'s' if healthy > 1 else ''} of each simulated rig, {of(changed, len(repeats))} repeats "
             f"without a change are reported as changed. {rows['changes: detected']} labelled changes are detected. The "
             f"correct cause is named or listed for {rows['changes: correct cause named or listed']} changes. Only wrong causes are "
             f"named for {rows['changes: only wrong causes named']} changes.")
+
+
+def meaning(values):
+    """Returns the sentences for each number of healthy runs."""
+    return " ".join(meaning_of(healthy, cases) for healthy, cases in by_healthy(values).items() if cases)
 
 
 def number_of_cases(values):

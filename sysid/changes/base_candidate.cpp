@@ -86,8 +86,7 @@ std::vector<BaseCandidate> base_candidates(const std::vector<Record>& records, J
     return {{"filter bank", {}, nothing, again},
             {"a regulator", fit_regulator(records, largest_kpa, ReadBy::gauge), nothing, again}};
   }
-  const bool command = drive == Drive::command;
-  BaseCandidate play = candidate_of(play_structure(drive), drive);
+  const BaseCandidate play = play_candidate(drive);
   const FittedParameters still = play.fit(records);
   std::vector<BaseCandidate> all{
       play,
@@ -100,7 +99,7 @@ std::vector<BaseCandidate> base_candidates(const std::vector<Record>& records, J
          return refit_published(driven, near.point);
        }}};
   all.front().fit = [still](const std::vector<Record>&) { return still; };
-  if (command) {
+  if (drive == Drive::command) {
     const Regulator regulator = fit_regulator(records, largest_kpa);
     all.push_back({"a regulator, " + play.description, regulator, play.fit, play.refit});
   }

@@ -91,6 +91,17 @@ std::string unchanged_since_one_log(const std::vector<JudgedChange>& readings) {
          " times. Record three or more healthy logs.";
 }
 
+std::string unchanged_sentence(const std::vector<JudgedChange>& readings) {
+  const auto is_single = [](const JudgedChange& judged) { return judged.healthy_runs == 1; };
+  if (std::any_of(readings.begin(), readings.end(), has_unfamiliar_input))
+    return "No change is detectable, but the input of the later logs is unlike the inputs of the healthy "
+           "logs. Therefore, a larger difference from the baseline model is permitted.";
+  if (!readings.empty() && std::all_of(readings.begin(), readings.end(), is_single))
+    return unchanged_since_one_log(readings);
+  return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
+         "from each other.";
+}
+
 }  // namespace
 
 Fields fields_of(const JudgedChange& judged) {
@@ -185,18 +196,7 @@ std::string interval_text(const ChangeCause& cause) {
 }
 
 std::string change_sentence(const ChangeDiagnosis& diagnosis) {
-  const auto& readings = diagnosis.readings;
-  if (diagnosis.verdict == ChangeVerdict::unchanged &&
-      std::any_of(readings.begin(), readings.end(), has_unfamiliar_input))
-    return "No change is detectable, but the input of the later logs is unlike the inputs of the healthy "
-           "logs. Therefore, a larger difference from the baseline model is permitted.";
-  if (diagnosis.verdict == ChangeVerdict::unchanged && !readings.empty() &&
-      std::all_of(readings.begin(), readings.end(),
-                  [](const JudgedChange& j) { return j.healthy_runs == 1; }))
-    return unchanged_since_one_log(readings);
-  if (diagnosis.verdict == ChangeVerdict::unchanged)
-    return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
-           "from each other.";
+  if (diagnosis.verdict == ChangeVerdict::unchanged) return unchanged_sentence(diagnosis.readings);
   if (diagnosis.verdict == ChangeVerdict::unexplained)
     return "The finger has changed since the healthy logs, but no cause of the library explains the change.";
   std::string text = "Change since the healthy logs: ";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -81,22 +82,30 @@ class CorrelatedNoise {
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
-  /// Filters W for a noise model, and returns the covariance W' C W of the estimates in the coordinates y.
-  [[nodiscard]] MatrixXd product(const NoiseModel& noise) {
-    filtered_ = jacobian_;
-    for_each_record([&](Index first, Index count) { backwards(filtered_.middleRows(first, count), noise); });
-    return noise.innovation_mm * noise.innovation_mm * (filtered_.transpose() * filtered_);
+  /// Returns W after the backward pass of the filter.
+  [[nodiscard]] Jacobian filtered(const NoiseModel& noise) const {
+    Jacobian x = jacobian_;
+    for_each_record([&](Index first, Index count) { backwards(x.middleRows(first, count), noise); });
+    return x;
+  }
+
+  /// Returns the covariance W' C W of the estimates in the coordinates y.
+  /// @param filtered  filtered(noise).
+  [[nodiscard]] static MatrixXd product(const Jacobian& filtered, const NoiseModel& noise) {
+    return noise.innovation_mm * noise.innovation_mm * (filtered.transpose() * filtered);
   }
 
   /// Increases the autocovariances of the residuals by the part of the noise that the fit has absorbed. With
   /// the noise covariance C, the covariance of the residuals is (I - H) C (I - H), where H = W W'.
-  /// @param noise, meat  argument and result of the last call of product().
-  void give_back(const NoiseModel& noise, const MatrixXd& meat, Autocovariance& covariance) {
-    for_each_record([&](Index first, Index count) { forwards(filtered_.middleRows(first, count), noise); });
+  /// @param filtered  filtered(noise).
+  /// @param meat  product(filtered, noise).
+  void give_back(Jacobian filtered, const NoiseModel& noise, const MatrixXd& meat,
+                 Autocovariance& covariance) const {
+    for_each_record([&](Index first, Index count) { forwards(filtered.middleRows(first, count), noise); });
     const double s2 = noise.innovation_mm * noise.innovation_mm;
     for_each_record([&](Index first, Index count) {
       const auto w = jacobian_.middleRows(first, count);
-      const auto cw = filtered_.middleRows(first, count);
+      const auto cw = filtered.middleRows(first, count);
       const Jacobian rest = s2 * cw - w * meat;
       const auto lags = static_cast<Index>(covariance.lags.size());
       const Index groups = (count + rows_at_once - 1) / rows_at_once;
@@ -169,7 +178,6 @@ class CorrelatedNoise {
 
   const Jacobian& jacobian_;
   const std::vector<std::size_t>& rows_;
-  Jacobian filtered_;  ///< W after the first pass of the filter, or after both
 };
 
 /// Returns a square root of the covariance of the estimates in the coordinates y. The covariance is the root
@@ -269,17 +277,19 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
     // The computed effect of an unseen coordinate consists of rounding errors.
     if (coordinates.unseen[static_cast<std::size_t>(k)]) columns.col(k).setZero();
   }
-  CorrelatedNoise correlated(columns, counts);
-  MatrixXd meat = correlated.product(u.noise);
+  const CorrelatedNoise correlated(columns, counts);
+  Jacobian filtered = correlated.filtered(u.noise);
+  MatrixXd meat = CorrelatedNoise::product(filtered, u.noise);
   // The residuals are smaller and less correlated than the noise, because the fit has absorbed part of the
   // noise. The correction for the absorbed part uses lags up to the order of the model plus this number.
   constexpr std::size_t lags_beyond = 5;
   for (int pass = 0; pass < 2; ++pass) {
     Autocovariance whole = observed;
     whole.lags.resize(std::min(whole.lags.size(), u.noise.coefficients.size() + lags_beyond));
-    correlated.give_back(u.noise, meat, whole);
+    correlated.give_back(std::move(filtered), u.noise, meat, whole);
     u.noise = fit_noise(whole);
-    meat = correlated.product(u.noise);
+    filtered = correlated.filtered(u.noise);
+    meat = CorrelatedNoise::product(filtered, u.noise);
   }
   const MatrixXd root = coordinates.to_z * root_of(meat, coordinates, u.noise);
   u.root = MatrixXd::Zero(n, root.cols());

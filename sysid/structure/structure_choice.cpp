@@ -279,16 +279,16 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   fitted_with[first_ridge] = judge.fit(richest, ridges[first_ridge]);
   parallel_for(ridges.size(), options.threads, [&](std::size_t i) {
     if (i != first_ridge) fitted_with[i] = judge.fit(richest, ridges[i], &fitted_with[first_ridge].numbers);
-    by_ridge[i] = judge.judge(fitted_with[i], ridges[i], 0);
+    by_ridge[i] = judge.judge(fitted_with[i], 0);
   });
   const std::size_t best_ridge = best_of(by_ridge);
   choice.ridge = ridges[best_ridge];
   std::atomic<std::size_t> done{0};
   choice.trials.resize(structures.size());
   parallel_for(structures.size(), options.threads, [&](std::size_t i) {
-    choice.trials[i] = i + 1 == structures.size() ? judge.judge(fitted_with[best_ridge], choice.ridge,
-                                                                StructureJudge::fold_iterations)
-                                                  : judge.judge(structures[i], choice.ridge);
+    choice.trials[i] = i + 1 == structures.size()
+                           ? judge.judge(fitted_with[best_ridge], StructureJudge::fold_iterations)
+                           : judge.judge(structures[i], choice.ridge);
     say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " evaluated");
   });
   choice.candidates = choice.trials.size();

@@ -112,7 +112,6 @@ class Search {
     // The parameters that do not affect the pressure in the finger are changed first. During these changes,
     // the pressure that was computed for the current state stays valid. The other parameters need a new
     // simulation each, so a second thread with its own columns computes every second one of them.
-    if (!beside_) beside_.emplace(columns_);
     std::array<std::vector<Eigen::Index>, 2> parts;
     std::size_t driving = 0;
     for (const bool drives : {false, true}) {
@@ -121,6 +120,7 @@ class Search {
           parts[drives ? ++driving % 2 : 0].push_back(k);
       }
     }
+    if (!parts[1].empty() && !beside_) beside_.emplace(columns_);
     parallel_for_idle(parts.size(), [&](std::size_t part) {
       for (const Eigen::Index k : parts[part]) {
         const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];

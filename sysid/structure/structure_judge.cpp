@@ -50,8 +50,7 @@ FittedStructure StructureJudge::fit(const BaseStructure& structure, double ridge
 }
 
 StructureTrial StructureJudge::judge(const BaseStructure& structure, double ridge) const {
-  return structure.published ? judge_published(structure)
-                             : judge(fit(structure, ridge), ridge, fold_iterations);
+  return structure.published ? judge_published(structure) : judge(fit(structure, ridge), fold_iterations);
 }
 
 StructureTrial StructureJudge::trial_with(const FittedStructure& whole) const {
@@ -65,9 +64,9 @@ StructureTrial StructureJudge::trial_with(const FittedStructure& whole) const {
   return trial;
 }
 
-StructureTrial StructureJudge::judge(const FittedStructure& whole, double ridge, int iterations) const {
+StructureTrial StructureJudge::judge(const FittedStructure& whole, int iterations) const {
   StructureTrial trial = trial_with(whole);
-  StructureFitOptions options = with_ridge(ridge);
+  StructureFitOptions options = with_ridge(whole.ridge);
   options.most_iterations = iterations;
   judge_held_out(trial, [&](const std::vector<Record>& rest) {
     const FittedStructure fit = fit_form(rest, trial.structure, grid_, options, &whole.numbers);
@@ -80,7 +79,7 @@ StructureTrial StructureJudge::judge_near(const BaseStructure& structure, double
                                           const NonlinearNumbers& numbers, double below_mm) const {
   const FittedStructure whole = fit(structure, ridge, &numbers);
   if (!(std::sqrt(whole.mean_square_mm2) < below_mm)) return trial_with(whole);
-  return judge(whole, ridge, fold_iterations);
+  return judge(whole, fold_iterations);
 }
 
 StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const StructureTrial& lagging,

@@ -39,7 +39,7 @@ class StructureJudge {
   /// Evaluates a fitted structure on held-out blocks.
   /// @param iterations  maximum number of iterations in each fold. The fit of a fold starts from the
   /// parameters of `whole`. 0: the nonlinear parameters stay fixed.
-  [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const;
+  [[nodiscard]] StructureTrial judge(const FittedStructure& whole, int iterations) const;
   /// Evaluates a structure. The fit starts from the nonlinear parameters `numbers` of a similar structure.
   /// @param below_mm  if the RMSE of the fit to all readings is not below this limit, the structure is not
   /// evaluated on held-out blocks.
