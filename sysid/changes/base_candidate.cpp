@@ -18,20 +18,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns the parameters with the initial states of some of the records.
-FittedParameters for_records(FittedParameters parameters, const std::vector<std::size_t>& kept) {
-  const auto reduce = [&kept](auto& of_records) {
-    if (of_records.empty()) return;
-    std::remove_reference_t<decltype(of_records)> reduced;
-    for (const std::size_t r : kept) reduced.push_back(of_records[r]);
-    of_records = std::move(reduced);
-  };
-  reduce(parameters.point.starts);
-  reduce(parameters.numbers.peak_before_kpa);
-  reduce(parameters.numbers.jumped_from_kpa);
-  return parameters;
-}
-
 BaseStructure play_structure(Drive drive, std::size_t modes = 0) {
   return {.hysteresis = HysteresisForm::play,
           .delay = drive == Drive::command,
@@ -73,6 +59,19 @@ bool may_have_a_mode(const std::vector<Record>& records, Drive drive, const Fitt
 }
 
 }  // namespace
+
+FittedParameters for_records(FittedParameters parameters, const std::vector<std::size_t>& kept) {
+  const auto reduce = [&kept](auto& of_records) {
+    if (of_records.empty()) return;
+    std::remove_reference_t<decltype(of_records)> reduced;
+    for (const std::size_t r : kept) reduced.push_back(of_records[r]);
+    of_records = std::move(reduced);
+  };
+  reduce(parameters.point.starts);
+  reduce(parameters.numbers.peak_before_kpa);
+  reduce(parameters.numbers.jumped_from_kpa);
+  return parameters;
+}
 
 BaseCandidate play_candidate(Drive drive) {
   return candidate_of(play_structure(drive), drive);

@@ -19,6 +19,10 @@ struct FittedParameters {
   NonlinearNumbers numbers;  ///< nonlinear parameters of a structure with columns (StructureColumns)
 };
 
+/// Returns the parameters with the initial states of some of the records.
+/// @param kept  indices of these records.
+[[nodiscard]] FittedParameters for_records(FittedParameters parameters, const std::vector<std::size_t>& kept);
+
 /// A model structure that may become the baseline model, with the functions that fit its parameters. They
 /// fit the model to records whose drive is the output of the regulator. A model without blocks predicts the
 /// output of the regulator, or 0 if there is no regulator.

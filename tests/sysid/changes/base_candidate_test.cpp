@@ -51,6 +51,18 @@ TEST(BaseCandidate, FitWithoutARunAgreesWithAFitFromTheDefaultStarts) {
   EXPECT_GE(compared, 2 * records.size());
 }
 
+TEST(BaseCandidate, InitialStatesBelongToTheKeptRecords) {
+  FittedParameters whole;
+  whole.point.starts.resize(3);
+  for (std::size_t r = 0; r < 3; ++r) whole.point.starts[r].peak_before_kpa = 10.0 * static_cast<double>(r);
+  whole.numbers.peak_before_kpa = {1, 2, 3};
+  const FittedParameters kept = for_records(whole, {0, 2});
+  ASSERT_EQ(kept.point.starts.size(), 2U);
+  EXPECT_EQ(kept.point.starts[1].peak_before_kpa, 20);
+  EXPECT_EQ(kept.numbers.peak_before_kpa, (std::vector<double>{1, 3}));
+  EXPECT_TRUE(kept.numbers.jumped_from_kpa.empty());  // the structure is not linear
+}
+
 TEST(BaseCandidate, PressureHasAFilterBankAndARegulator) {
   const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
   const std::vector<BaseCandidate> all =

@@ -6,7 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <Eigen/QR>
+
 #include "sysid/fitting/bounded_solve.h"
+#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/score.h"
 #include "sysid/fitting/start_estimate.h"
@@ -57,6 +61,82 @@ TEST(Uncertainty, IsEmptyWithoutFreeParameters) {
   const Uncertainty uncertainty = uncertainty_at(*residuals, {}, HUGE_VAL);
   EXPECT_EQ(uncertainty.root.size(), 0);
   EXPECT_NEAR(uncertainty.noise.deviation_mm, 0.05, 0.005);
+}
+
+/// Returns the covariance of autoregressive noise in several series: s^2 (A'A)^-1 for the whitening matrix A
+/// of each series.
+Eigen::MatrixXd covariance_of(const NoiseModel& noise, const std::vector<Record>& records) {
+  Eigen::Index rows = 0, first = 0;
+  for (const Record& record : records) rows += static_cast<Eigen::Index>(record.readings);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
+  for (const Record& record : records) {
+    const auto n = static_cast<Eigen::Index>(record.readings);
+    Eigen::MatrixXd whitening = Eigen::MatrixXd::Identity(n, n);
+    for (std::size_t lag = 1; lag <= noise.coefficients.size(); ++lag)
+      whitening.diagonal(-static_cast<Eigen::Index>(lag)).setConstant(-noise.coefficients[lag - 1]);
+    const Eigen::MatrixXd inverse =
+        whitening.triangularView<Eigen::UnitLower>().solve(Eigen::MatrixXd::Identity(n, n));
+    covariance.block(first, first, n, n) =
+        noise.innovation_mm * noise.innovation_mm * inverse * inverse.transpose();
+    first += n;
+  }
+  return covariance;
+}
+
+/// The reference multiplies complete matrices. One record is longer than the groups of rows that
+/// uncertainty_at() processes together, and the other one is shorter.
+TEST(Uncertainty, AgreesWithMatrixAlgebraForCorrelatedNoise) {
+  const model::Model truth = loaded("bench_twin");
+  std::vector<Log> logs{slice(simulated(truth, model::SignalName::tp1, 25, 0.02, 1), 0, 1100),
+                        slice(simulated(truth, model::SignalName::sp2, 25, 0.02, 2), 0, 300)};
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const std::vector<double> error = autoregressive(0.9, logs[k].size(), 11 + k);
+    for (std::size_t i = 0; i < error.size(); ++i) logs[k].displacement_mm[i] += 0.1 * error[i];
+  }
+  const std::vector<Record> records = make_records(logs, {});
+  ASSERT_EQ(records[0].readings, 1100U);
+  const std::vector<std::size_t> free{0, 1, 2, 3, 4, 8, 9, 10, 11};  // more than a group of columns
+  const auto residuals = residuals_for(records, FitSpace(truth, records, free));
+  const std::vector<double> z = residuals->space().z({truth, rest_starts(truth, records)});
+  const Uncertainty found = uncertainty_at(*residuals, z, HUGE_VAL);
+
+  const auto rows = static_cast<Eigen::Index>(residuals->count());
+  Jacobian jacobian(rows, static_cast<Eigen::Index>(z.size()));
+  std::vector<double> r(residuals->count());
+  ASSERT_TRUE(residuals->evaluate(z, r, {jacobian.data(), static_cast<std::size_t>(jacobian.size())}));
+  for (std::size_t i = 0; i < z.size(); ++i) ASSERT_FALSE(found.at_bound[i] || found.without_effect[i]) << i;
+  std::vector<std::span<const double>> series;
+  std::size_t first = 0;
+  for (const Record& record : records) {
+    series.emplace_back(&r[first], record.readings);
+    first += record.readings;
+  }
+  const Autocovariance observed = autocovariance_of(series);
+  NoiseModel noise = fit_noise(observed);
+  const Eigen::MatrixXd inverse = jacobian.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd hat = jacobian * inverse;
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::MatrixXd c = covariance_of(noise, records), ch = c * hat;
+    const Eigen::MatrixXd absorbed = ch + ch.transpose() - hat * ch;
+    Autocovariance whole = observed;
+    whole.lags.resize(std::min(whole.lags.size(), noise.coefficients.size() + 5));
+    for (std::size_t lag = 0; lag < whole.lags.size(); ++lag) {
+      Eigen::Index from = 0;
+      for (const Record& record : records) {
+        const auto n = static_cast<Eigen::Index>(record.readings);
+        whole.lags[lag] += absorbed.block(from, from, n, n).diagonal(static_cast<Eigen::Index>(lag)).sum() /
+                           static_cast<double>(whole.samples);
+        from += n;
+      }
+    }
+    noise = fit_noise(whole);
+  }
+  ASSERT_GT(noise.coefficients.size(), 0U);
+  EXPECT_NEAR(found.noise.deviation_mm, noise.deviation_mm, 1e-9);
+  const Eigen::MatrixXd expected = inverse * covariance_of(noise, records) * inverse.transpose();
+  const Eigen::MatrixXd covariance = found.root * found.root.transpose();
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    EXPECT_NEAR(covariance(i, i) / expected(i, i), 1, 1e-6) << i;
 }
 
 TEST(Identify, IsRefusedIfNothingRemainsToBeFitted) {

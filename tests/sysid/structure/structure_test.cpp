@@ -147,6 +147,22 @@ TEST(StructureColumns, AreBitForBitTheSameOnMoreThreads) {
   EXPECT_EQ(structure_columns(records, structure, grid, numbers), alone);
 }
 
+// A fit with one start point computes its derivatives on two threads.
+TEST(StructureFit, IsBitForBitTheSameOnMoreThreads) {
+  const std::vector<Record> records =
+      make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
+  const StructureGrid grid = grid_for(records);
+  const NonlinearNumbers near{.delay_s = 0.01, .filling_s = 0.05, .venting_s = 0.4, .peak_before_kpa = {0}};
+  const auto fitted_with = [&](unsigned threads) {
+    const ThreadBudget budget(threads);
+    return fit_form(records, {.hinged_creep = true}, grid, {}, &near);
+  };
+  const FittedStructure alone = fitted_with(1), together = fitted_with(2);
+  EXPECT_NE(alone.numbers, near);
+  EXPECT_EQ(together.numbers, alone.numbers);
+  EXPECT_EQ(together.weights, alone.weights);
+}
+
 TEST(PublishedElement, RefitWithoutABlockPredictsTheBlock) {
   const std::vector<Record> records =
       make_records({simulated(loaded("bench_twin"), SignalName::tp1, 100, 0.05, 2)}, {});
