@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <set>
 
 namespace softgrip::model::recent_durations_test {
@@ -22,7 +23,8 @@ TEST(RecentDurations, ANewDurationReplacesTheOldestOne) {
   std::set<std::size_t> used;
   for (int i = 0; i < 4; ++i) used.insert(durations.at(0.01 * (i + 1)).index);
   ASSERT_EQ(used.size(), RecentDurations<double>::slots);
-  EXPECT_EQ(durations.at(0.5).index, durations.find(0.5));
+  const std::size_t index = durations.at(0.5).index;
+  EXPECT_EQ(durations.find(0.5), index);
   EXPECT_FALSE(durations.find(0.01));
   EXPECT_TRUE(durations.find(0.02));
 }
