@@ -2,6 +2,7 @@
 // Computes the pressure drop between a regulator and a finger that has a leak.
 
 #include "model/number.h"
+#include "model/port_flow.h"
 
 namespace softgrip::model {
 
@@ -16,8 +17,6 @@ template <class T>
 struct LineLoss {
   T share;  ///< ratio of the pressure drop of the line to the pressure at the finger, at small pressures; >=
             ///< 0
-
-  static constexpr double atmosphere_kpa = 101.325;
 
   /// Returns the pressure before the line for the pressure `p` at the finger. For p from 0 to the atmospheric
   /// pressure a, the result is p + share p a / (p + a).

@@ -8,6 +8,7 @@
 
 #include "model/exponential.h"
 #include "model/number.h"
+#include "model/port_flow.h"
 #include "model/segment.h"
 
 namespace softgrip::model {
@@ -94,10 +95,6 @@ class RegulatedPressure {
   /// Largest number of steps of a segment. With steps of longest_step_s, this number covers more than an
   /// hour, in which the pressure comes to rest.
   static constexpr double most_steps = 1e6;
-  static constexpr double atmosphere_kpa = 101.325;
-  /// Critical pressure ratio of a common port according to ISO 6358-1, and the pressure ratio above which the
-  /// flow of a port is computed as linear in the ratio.
-  static constexpr double critical_ratio = 0.3, linear_above = 0.995;
   /// Gauge pressure for which venting_s is defined [kPa].
   static constexpr double usual_kpa = 50;
   static constexpr double shortest_s = 1e-4;
@@ -105,16 +102,8 @@ class RegulatedPressure {
   /// Returns the flow to the atmosphere at the gauge pressure `gauge_kpa`, divided by the sonic conductance
   /// of the port [kPa].
   static T outflow(const T& gauge_kpa) {
-    using std::sqrt;
     if (value_of(gauge_kpa) <= 0) return T(0.0);
-    const T from_kpa = gauge_kpa + atmosphere_kpa;
-    const T ratio = atmosphere_kpa / from_kpa;
-    const auto subsonic = [](const T& r) -> T {
-      const T x = (r - critical_ratio) * (1 / (1 - critical_ratio));
-      return sqrt(1.0 - x * x);
-    };
-    if (value_of(ratio) < linear_above) return from_kpa * subsonic(ratio);
-    return from_kpa * subsonic(T(linear_above)) * ((1.0 - ratio) * (1 / (1 - linear_above)));
+    return port_flow(T(gauge_kpa + atmosphere_kpa), T(atmosphere_kpa));
   }
 
   /// Returns true if the command is constant and equals the pressure, and the integral is within the overlap.

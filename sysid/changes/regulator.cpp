@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/port_flow.h"
+
 namespace softgrip::sysid {
 namespace {
 
-constexpr double atmosphere_kpa = 101.325;
+using model::atmosphere_kpa;
+
 /// Longest simulation step [s], and largest number of steps in one sampling interval. The number of steps can
 /// be limited because the implicit steps are stable. The limit applies to sampling intervals of more than
 /// 0.1 s, which do not resolve the dynamics of a regulator.
@@ -15,19 +18,9 @@ constexpr int most_steps = 50;
 /// Assumed supply pressure as a multiple of the largest command. It is used if the supply pressure is not
 /// recorded.
 constexpr double supply_unknown = 4;
-/// Returns the flow between two absolute pressures, divided by the conductance [kPa]. The flow follows ISO
-/// 6358-1 with a critical pressure ratio of 0.3.
+/// Returns the flow between two absolute pressures, divided by the conductance [kPa].
 double flow(double from_kpa, double to_kpa) {
-  if (from_kpa < to_kpa) return -flow(to_kpa, from_kpa);
-  constexpr double critical = 0.3, linear_above = 0.995;
-  const double ratio = to_kpa / from_kpa;
-  if (ratio <= critical) return from_kpa;
-  const auto subsonic = [](double r) {
-    const double x = (r - critical) / (1 - critical);
-    return std::sqrt(1 - x * x);
-  };
-  static const double at_linear = subsonic(linear_above);
-  return from_kpa * (ratio < linear_above ? subsonic(ratio) : at_linear * (1 - ratio) / (1 - linear_above));
+  return from_kpa < to_kpa ? -model::port_flow(to_kpa, from_kpa) : model::port_flow(from_kpa, to_kpa);
 }
 
 /// Simulates one regulator. The pressures in finger, valve and supply are absolute.
@@ -93,7 +86,7 @@ class Walk {
   /// If it does not converge, the method of false position is used.
   [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
     constexpr int most_secants = 6;
-    constexpr double beside_kpa = 0.01, near_kpa = 1e-4;
+    constexpr double beside_kpa = 0.01;
     double last_kpa = valve_kpa_, last = surplus(last_kpa, supply_kpa, step_s);
     if (last == 0) return last_kpa;
     double next_kpa = last_kpa + std::copysign(beside_kpa, last);
@@ -111,7 +104,6 @@ class Walk {
   /// Finds the zero of surplus() by the method of false position (Illinois algorithm).
   [[nodiscard]] double by_false_position(double supply_kpa, double step_s) const {
     constexpr int most = 40;
-    constexpr double near_kpa = 1e-4;
     double low = atmosphere_kpa, high = supply_kpa;
     double at_low = surplus(low, supply_kpa, step_s), at_high = surplus(high, supply_kpa, step_s);
     if (!(at_low > 0)) return low;
@@ -136,6 +128,9 @@ class Walk {
     }
     return between;
   }
+
+  /// Accuracy of the pressure before the tube [kPa].
+  static constexpr double near_kpa = 1e-4;
 
   Regulator regulator_;
   double seen_kpa_, finger_kpa_, valve_kpa_;

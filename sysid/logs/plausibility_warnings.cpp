@@ -8,10 +8,13 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "model/port_flow.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
 namespace {
+
+using model::atmosphere_kpa;
 
 // Limits for plausible values. A value beyond a limit in this file or in unit_factors.h probably has a wrong
 // unit.
@@ -26,7 +29,6 @@ constexpr double large_gain_deg_per_kpa = 5;
 constexpr double small_as_mbar = 20e3;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
-constexpr double atmosphere_kpa = 101.325;
 /// A correlation with a magnitude above this value counts as significant.
 constexpr double clear_correlation = 0.5;
 /// Limit of the mean relative area of the loops. An area below this negative limit means that the readings

@@ -13,7 +13,6 @@ namespace softgrip::model::testing::leak_test {
 namespace {
 
 using Block = Leak<double>;
-constexpr double atmosphere_kpa = LineLoss<double>::atmosphere_kpa;
 
 /// Returns the flow of ISO 6358-1 at reference conditions, divided by the conductance. The arguments are
 /// absolute pressures. The critical pressure ratio is 0.5.
