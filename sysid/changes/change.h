@@ -104,7 +104,10 @@ struct JudgedChange {
   /// Fitted deviation of the gain from the gain in the healthy logs [%]. It is within the spread of the
   /// healthy logs, so it does not count as a change.
   double gain_percent = 0;
+  /// True if the causes leave an error that no further healthy run is expected to have.
   bool left_over = false;
+  /// Name of the only later log with such an error; empty if there is none, or if other logs also have it.
+  std::string unusual_log;
   std::vector<TriedCause> tried;
   /// Intervals of the causes, in the order in which the causes were found.
   std::vector<EffectIntervals> intervals;

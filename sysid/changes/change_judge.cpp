@@ -66,6 +66,13 @@ std::string unfamiliar_commands(double share) {
          "much farther from the pressure than in any healthy log. Record a healthy log with such steps";
 }
 
+std::string unusual_log(const std::string& record) {
+  return "The error in " + record +
+         " is larger than expected for a further healthy run, but the error in the other later logs is not. "
+         "A change appears in every later log, so this difference is not reported as a change. Record " +
+         record + " again";
+}
+
 /// Returns true if the gain of the later logs differs from the healthy gain by more than the gains of two
 /// runs of a finger usually differ.
 bool has_unusual_gain(const JudgedChange& judged) {
@@ -151,6 +158,7 @@ class Judge {
     finish(readings, effects, found, judged);
     if (base_.judged == Judged::displacement && has_unusual_gain(judged))
       diagnosis.warnings.push_back(unusual_gain(judged.gain_percent));
+    if (!judged.unusual_log.empty()) diagnosis.warnings.push_back(unusual_log(judged.unusual_log));
     diagnosis.readings.push_back(std::move(judged));
   }
 
@@ -284,10 +292,27 @@ class Judge {
     return cause;
   }
 
+  /// Returns the name of the record without which the error of the other later records is within the errors
+  /// of healthy runs. If there is only one record or no such record, returns an empty text. The run is the
+  /// unit of the evidence, so a single run does not show a change that the other later runs do not show.
+  [[nodiscard]] std::string decisive_record(const LaterReadings& readings,
+                                            const std::vector<FittedEffect>& found) const {
+    const std::vector<Record>& records = readings.records();
+    for (std::size_t r = 0; r < records.size() && records.size() > 1; ++r) {
+      const LaterReadings others = readings.without_record(r);
+      if (!spread_.is_exceeded(others.plain_rms(found), per_bin(others, others.white(found))))
+        return records[r].name;
+    }
+    return {};
+  }
+
   void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
               const std::vector<FittedEffect>& found, JudgedChange& judged) const {
     judged.intervals = intervals_of(readings, found, healthy_);
-    judged.left_over = spread_.is_exceeded(readings.plain_rms(found), judged.loss_left);
+    if (spread_.is_exceeded(readings.plain_rms(found), judged.loss_left)) {
+      judged.unusual_log = decisive_record(readings, found);
+      judged.left_over = judged.unusual_log.empty();
+    }
     judged.bin_s = base_.bin_s;
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
     judged.left = readings.left();

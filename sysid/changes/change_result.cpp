@@ -93,6 +93,12 @@ std::string unchanged_since_one_log(const std::vector<JudgedChange>& readings) {
 
 std::string unchanged_sentence(const std::vector<JudgedChange>& readings) {
   const auto is_single = [](const JudgedChange& judged) { return judged.healthy_runs == 1; };
+  for (const JudgedChange& judged : readings) {
+    if (!judged.unusual_log.empty())
+      return "Unchanged: only " + judged.unusual_log +
+             " differs from the healthy logs by more than the healthy logs differ from each other. A change "
+             "would appear in every later log.";
+  }
   if (std::any_of(readings.begin(), readings.end(), has_unfamiliar_input))
     return "No change is detectable, but the input of the later logs is unlike the inputs of the healthy "
            "logs. Therefore, a larger difference from the baseline model is permitted.";
@@ -125,6 +131,7 @@ Fields fields_of(const JudgedChange& judged) {
       {"whitened_loss", loss},
       {"misfit", loss},
       {"unexplained", judged.left_over},
+      {"unusual_log", judged.unusual_log},
       {"structure_left", judged.left_over},
       {"zero", "change of the zero offset", number(judged.zero_mm, 2, unit)},
       {"gain_percent", "gain change within the spread of healthy runs", number(judged.gain_percent, 2, "%")},

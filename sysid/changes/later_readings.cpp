@@ -93,8 +93,14 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
   normal.diagonal() += price_.cwiseAbs2();
   normal.diagonal().array() += 1e-9;
   solver_ = normal.ldlt().solve(nuisance_.transpose());
-  motion_ = rows_(plain_);
+  motion_.resize(target_.size(), static_cast<Eigen::Index>(later_.size()));
+  for (std::size_t r = 0; r < later_.size(); ++r) {
+    Binned own = none;
+    own[r] = plain_[r];
+    motion_.col(static_cast<Eigen::Index>(r)) = rows_(own);
+  }
   motion_left_ = motion_ - nuisance_ * (solver_ * motion_);
+  motion_squares_ = motion_left_.transpose() * motion_;
 }
 
 template <class Keep>
@@ -125,6 +131,10 @@ LaterReadings LaterReadings::without(const Units& units, std::size_t unit) const
   return part([&](std::size_t r, double s) { return units.unit_of(r, s) != unit; });
 }
 
+LaterReadings LaterReadings::without_record(std::size_t record) const {
+  return part([&](std::size_t r, double) { return r != record; });
+}
+
 LaterReadings healthy_readings(const Base& base) {
   return {base, base.records, base.left};
 }
@@ -141,13 +151,28 @@ Binned LaterReadings::added(const std::vector<FittedEffect>& effects) const {
   return added;
 }
 
+/// Minimises the residual by coordinate descent. The common zero offset couples the records only weakly.
+Eigen::VectorXd LaterReadings::gains_of(const Eigen::VectorXd& left) const {
+  constexpr int passes = 10;
+  const double bound = base_.free_gain;
+  const Eigen::VectorXd products = motion_left_.transpose() * left;
+  Eigen::VectorXd gains = Eigen::VectorXd::Zero(products.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    for (Eigen::Index r = 0; r < gains.size(); ++r) {
+      const double square = motion_squares_(r, r);
+      if (!(square > 0)) continue;
+      const double others = motion_squares_.row(r).dot(gains) - square * gains(r);
+      gains(r) = std::clamp((products(r) - others) / square, -bound, bound);
+    }
+  }
+  return gains;
+}
+
 LaterReadings::Split LaterReadings::split(const std::vector<FittedEffect>& effects) const {
   Split split;
   split.left = effects.empty() ? target_ : Eigen::VectorXd(target_ - rows_(added(effects)));
-  const double bound = base_.free_gain;
-  const double square = motion_left_.dot(motion_);
-  split.gain = square > 0 ? std::clamp(motion_left_.dot(split.left) / square, -bound, bound) : 0;
-  split.left -= split.gain * motion_;
+  split.gains = gains_of(split.left);
+  split.left -= motion_ * split.gains;
   split.zeros = solver_ * split.left;
   split.left -= nuisance_ * split.zeros;
   return split;
@@ -165,14 +190,15 @@ Eigen::VectorXd LaterReadings::white(const std::vector<FittedEffect>& effects) c
 
 Eigen::VectorXd LaterReadings::white_and_gain(const std::vector<FittedEffect>& effects) const {
   const Split split = this->split(effects);
-  Eigen::VectorXd out(split.left.size() + split.zeros.size() + 1);
-  out << white_of(split), split.gain / base_.gain_spread;
+  Eigen::VectorXd out(split.left.size() + split.zeros.size() + split.gains.size());
+  out << white_of(split), split.gains / base_.gain_spread;
   return out;
 }
 
 LaterReadings::Nuisance LaterReadings::nuisance(const std::vector<FittedEffect>& effects) const {
   const Split split = this->split(effects);
-  return {split.zeros(0), split.gain};
+  const double squares = motion_squares_.trace();
+  return {split.zeros(0), squares > 0 ? motion_squares_.diagonal().dot(split.gains) / squares : 0};
 }
 
 std::vector<std::string> LaterReadings::other_starts() const {
@@ -210,7 +236,8 @@ std::vector<double> LaterReadings::without_transient(std::size_t record,
 
 double LaterReadings::plain_rms(const std::vector<FittedEffect>& effects) const {
   const Binned added = this->added(effects);
-  double misses = 0, products = 0, motions = 0, count = 0;
+  const double bound = base_.free_gain;
+  double squares = 0, count = 0;
   for (std::size_t r = 0; r < left_.size(); ++r) {
     std::vector<double> error = left_[r];
     for (std::size_t b = 0; b < error.size(); ++b) error[b] -= added[r][b];
@@ -219,15 +246,12 @@ double LaterReadings::plain_rms(const std::vector<FittedEffect>& effects) const 
     PairSums own;
     for (std::size_t b = 0; b < error.size(); ++b) own.add(motion[b], error[b]);
     if (own.count == 0) continue;
-    misses += own.yy - own.y * own.y / own.count;
-    products += own.covariance() / own.count;
-    motions += own.variance_x() / own.count;
+    const double product = own.covariance() / own.count, motion_square = own.variance_x() / own.count;
+    const double gain = motion_square > 0 ? std::clamp(product / motion_square, -bound, bound) : 0;
+    squares += own.yy - own.y * own.y / own.count - 2 * gain * product + gain * gain * motion_square;
     count += own.count;
   }
-  const double bound = base_.free_gain;
-  const double gain = motions > 0 ? std::clamp(products / motions, -bound, bound) : 0;
-  const double left = misses - 2 * gain * products + gain * gain * motions;
-  return count > 0 ? std::sqrt(std::max(left, 0.0) / count) : 0;
+  return count > 0 ? std::sqrt(std::max(squares, 0.0) / count) : 0;
 }
 
 LaterReadings readings_of(const Base& base, const std::vector<Record>& records,

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 
 /// Later records, and the difference between their readings and the prediction of the baseline model. Two
 /// deviations from the healthy logs do not count as a change: a zero offset, and a gain deviation within the
-/// spread of the healthy logs. Both are fitted and subtracted.
+/// spread of the healthy logs. Both are fitted for each record, as for a healthy run, and subtracted.
 class LaterReadings {
  public:
   /// @param later  later records, thinned by thinned_for().
@@ -25,13 +25,14 @@ class LaterReadings {
   /// other units.
   [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
   [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
+  [[nodiscard]] LaterReadings without_record(std::size_t record) const;
 
   /// Returns the whitened residual of the baseline model with these effects. Zero offset and gain deviation
   /// are fitted and subtracted first. The result contains the rows of rows(), followed by rows with the
   /// penalties of the fitted zero offsets.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
-  /// Returns the result of white() with one additional row: the fitted gain deviation, divided by the spread
-  /// of the gain in the healthy logs.
+  /// Returns the result of white() with one additional row for each record: its fitted gain deviation,
+  /// divided by the spread of the gain in the healthy logs.
   [[nodiscard]] Eigen::VectorXd white_and_gain(const std::vector<FittedEffect>& effects) const;
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
@@ -45,10 +46,10 @@ class LaterReadings {
   [[nodiscard]] const Binned& plain() const { return plain_; }
   /// Returns the prediction with the effects minus the prediction without the effects, averaged over bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
-  /// Returns the root mean square of the residual with these effects. The residual is not whitened. One zero
-  /// offset per record and one common gain deviation are fitted and subtracted first.
+  /// Returns the root mean square of the residual with these effects. The residual is not whitened. The zero
+  /// offset and the gain deviation of each record are fitted and subtracted first.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
-  /// Common zero offset [mm] and relative gain deviation that are fitted in addition to the effects.
+  /// Common zero offset [mm] and mean relative gain deviation that are fitted in addition to the effects.
   struct Nuisance {
     double zero_mm = 0, gain = 0;
   };
@@ -61,10 +62,10 @@ class LaterReadings {
   [[nodiscard]] LaterReadings part(Keep keep) const;
 
   struct Split {
-    Eigen::VectorXd left, zeros;
-    double gain = 0;
+    Eigen::VectorXd left, zeros, gains;  ///< `gains`: relative gain deviation of each record
   };
   [[nodiscard]] Split split(const std::vector<FittedEffect>& effects) const;
+  [[nodiscard]] Eigen::VectorXd gains_of(const Eigen::VectorXd& left) const;
   [[nodiscard]] std::vector<double> without_transient(std::size_t record,
                                                       const std::vector<double>& series) const;
   [[nodiscard]] Eigen::VectorXd white_of(const Split& split) const;
@@ -80,9 +81,10 @@ class LaterReadings {
   /// `solver_` is the matrix that computes the coefficients of these columns.
   Eigen::MatrixXd nuisance_, solver_;
   Eigen::VectorXd price_;  ///< for each column of `nuisance_`, the square root of its penalty
-  /// `motion_` is the whitened prediction of the baseline model. `motion_left_` is `motion_` after the fitted
-  /// zero offsets and transients are subtracted.
-  Eigen::VectorXd motion_, motion_left_;
+  /// Column r of `motion_` is the whitened prediction of the baseline model for record r, and zero for the
+  /// other records. `motion_left_` is `motion_` after the fitted zero offsets and transients are subtracted.
+  /// `motion_squares_` contains the scalar products of the columns of both.
+  Eigen::MatrixXd motion_, motion_left_, motion_squares_;
 };
 
 /// Returns the healthy records with the residual of each cross-validation unit. The unit was left out of the

@@ -492,5 +492,37 @@ TEST(Change, DifferentStartStateNeedsALargerError) {
   }));
 }
 
+/// Adds a displacement that jumps between two values at random times. No cause of the library explains it.
+Log with_random_jumps(Log log, double by_mm) {
+  std::mt19937 random(3);
+  std::exponential_distribution<double> pause_s(0.5);
+  double next_s = pause_s(random), added_mm = by_mm;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    for (; log.time_s[i] > next_s; next_s += pause_s(random)) added_mm = -added_mm;
+    log.displacement_mm[i] += added_mm;
+  }
+  return log;
+}
+
+TEST(Change, AnErrorInOneOfThreeLaterLogsIsNoChange) {
+  const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
+  std::vector<Log> later{log_of({}, 5), with_random_jumps(log_of({}, 6), 0.3), log_of({}, 7)};
+  const auto one = diagnose_change(healthy, later);
+  ASSERT_TRUE(one) << one.error();
+  EXPECT_EQ(one->readings.back().unusual_log, "log6");
+  EXPECT_GT(one->readings.back().later_mm, one->readings.back().allowed_mm);
+  EXPECT_EQ(one->verdict, ChangeVerdict::unchanged);
+  EXPECT_EQ(change_sentence(*one).find("Unchanged: only log6 differs"), 0U) << change_sentence(*one);
+  EXPECT_TRUE(std::any_of(one->warnings.begin(), one->warnings.end(), [](const std::string& warning) {
+    return warning.find("Record log6 again") != std::string::npos;
+  }));
+
+  later[2] = with_random_jumps(later[2], 0.3);
+  const auto two = diagnose_change(healthy, later);
+  ASSERT_TRUE(two) << two.error();
+  EXPECT_EQ(two->verdict, ChangeVerdict::unexplained) << change_sentence(*two);
+  EXPECT_EQ(two->readings.back().unusual_log, "");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::change_test

@@ -52,5 +52,25 @@ TEST(LaterReadings, ATransientIsNoChangeIfNoHealthyRecordBeginsAlike) {
   EXPECT_GT(alike_moved.plain_rms({}), 2 * readings(alike).plain_rms({}));
 }
 
+TEST(LaterReadings, EachRecordHasItsOwnGainWithinTheSpread) {
+  const auto records_of = [](double first, double second, unsigned seed) {
+    return make_records(
+        {test::log_of({.gain = 0.2 * first}, seed), test::log_of({.gain = 0.2 * second}, seed + 1)}, {});
+  };
+  std::vector<Record> healthy = records_of(1.02, 0.98, 1);
+  for (Record& record : records_of(1.01, 0.99, 3)) healthy.push_back(std::move(record));
+  const Base base = fit_base(healthy, Judged::displacement, Drive::command, {});
+  const auto readings = [&](double first, double second) {
+    const std::vector<Record> records = records_of(first, second, 5);
+    return readings_of(base, records, residuals_of(base, records));
+  };
+  const LaterReadings same = readings(1, 1), different = readings(1.02, 0.98);
+  EXPECT_LT(different.plain_rms({}), 1.2 * same.plain_rms({}));
+  EXPECT_LT(different.white({}).norm(), 1.2 * same.white({}).norm());
+  EXPECT_NEAR(different.nuisance({}).gain, 0, 0.01);
+  EXPECT_GT(readings(0.85, 0.85).plain_rms({}), 3 * same.plain_rms({}));
+  EXPECT_LT(readings(1, 0.85).without_record(1).plain_rms({}), 1.2 * same.plain_rms({}));
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::later_readings_test
