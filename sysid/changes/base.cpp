@@ -145,6 +145,18 @@ std::size_t order_for(const Base& base) {
   return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
+/// Returns the largest gain deviation of a further run. It is the smaller one of two values: a quantile for
+/// the measured spread alone, and a quantile that also uses the usual spread of fingers. Two or three runs
+/// measure their spread so roughly that the first value may exceed ten times the spread.
+/// @param spread  relative spread of the gain between the runs.
+/// @param free  degrees of freedom of the spread.
+double free_gain_of(double spread, double free) {
+  constexpr double more = limits::usual_gain_runs;
+  const double pooled =
+      std::sqrt((free * square(spread) + more * square(limits::usual_gain_spread)) / (free + more));
+  return std::min(spread * t_quantile(free), pooled * t_quantile(free + more));
+}
+
 /// Computes the variation of the gain and of the zero offset between the healthy runs.
 void spread(Base& base) {
   std::vector<PairSums> sums(base.units.count() * base.records.size());
@@ -178,8 +190,8 @@ void spread(Base& base) {
   const bool is_assumed = !base.units.are_runs() && base.judged == Judged::displacement;
   base.gain_spread = std::max(is_assumed ? limits::usual_gain_spread : least_gain_spread,
                               count > 0 ? std::sqrt(gains / count) : 0);
-  base.free_gain = base.gain_spread * (is_assumed ? deviate_between_two_runs
-                                                  : t_quantile(static_cast<double>(base.units.count() - 1)));
+  base.free_gain = is_assumed ? base.gain_spread * deviate_between_two_runs
+                              : free_gain_of(base.gain_spread, static_cast<double>(base.units.count() - 1));
   base.zero_spread_mm =
       std::max(least_zero_share * base.span_mm,
                count > 0 ? std::sqrt(std::max(0.0, zeros_squared - zeros * zeros / count) / free) : 0);
@@ -220,12 +232,18 @@ Record thinned_for(const Base& base, const Record& record) {
                             base.bin_s / (base.judged == Judged::pressure ? valve_parts : finger_parts));
 }
 
-Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, const BaseOptions& options) {
+Base fit_base(const std::vector<Record>& all_samples, Judged judged, Drive drive,
+              const BaseOptions& options) {
   Base base;
   base.judged = judged;
   base.drive = drive;
   base.bin_s =
-      bin_s(records, drive == Drive::command ? limits::search_interval_s : limits::finger_interval_s);
+      bin_s(all_samples, drive == Drive::command ? limits::search_interval_s : limits::finger_interval_s);
+  std::vector<Record> records = all_samples;
+  if (2 * options.later_interval_s > base.bin_s) {
+    for (Record& record : records) record = thinned_to(record, options.later_interval_s);
+    base.bin_s = bin_s(records, 2 * options.later_interval_s);
+  }
   base.temperature_c = mean_temperature(records);
   for (const Record& record : records) {
     base.largest_kpa = std::max(base.largest_kpa, record.largest_kpa);

@@ -87,11 +87,15 @@ struct BaseOptions {
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::function<void(const std::string&)> progress;
+  /// Longest sampling interval of the later records [s]. If the bins would contain fewer than two samples of
+  /// such a record, the healthy records are thinned to this interval, so that the means over bins have equal
+  /// noise.
+  double later_interval_s = 0;
 };
 
 /// Fits the baseline model and computes its uncertainty.
-/// @param records  records of the healthy finger at the full sampling rate.
-[[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
+/// @param all_samples  records of the healthy finger at the full sampling rate.
+[[nodiscard]] Base fit_base(const std::vector<Record>& all_samples, Judged judged, Drive drive,
                             const BaseOptions& options);
 
 /// Returns the bin length for a finger whose pressure is measured [s].

@@ -178,7 +178,7 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   ChangeDiagnosis diagnosis;
   warn(healthy, later, diagnosis.warnings);
   const ThreadBudget budget(options.threads);
-  const BaseOptions base{options.given, options.seed, options.threads, options.progress};
+  BaseOptions base{options.given, options.seed, options.threads, options.progress};
   bool pressure = has_pressure(healthy) && has_pressure(later);
   Prepared before = driven_records(healthy, pressure ? Drive::measured : Drive::command, options);
   if (pressure) {
@@ -193,6 +193,8 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   const Drive drive = pressure ? Drive::measured : Drive::command;
   const Prepared after = driven_records(later, drive, options, before.noise_mm);
   judge_readings(before, after, diagnosis);
+  for (const Record& record : after.records)
+    base.later_interval_s = std::max(base.later_interval_s, record.mean_interval_s());
   if (pressure)
     judge_change(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),
                  true, pressure_records(later, options.held), options, diagnosis);

@@ -79,9 +79,10 @@ bool has_unusual_gain(const JudgedChange& judged) {
   return std::abs(judged.gain_percent) > 100 * usual_gain_difference;
 }
 
-std::string unusual_gain(double percent) {
-  return "The gain in the later logs differs by " + significant(percent, 3) +
-         " % from the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
+std::string unusual_gain(double percent, bool is_limited) {
+  return "The gain in the later logs differs by " + significant(percent, 3) + " %" +
+         (is_limited ? " or more" : "") +
+         " from the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
          "this difference is not significant. Record more healthy logs";
 }
 
@@ -156,8 +157,10 @@ class Judge {
     }
     accept_named(diagnosis.causes, judged);
     finish(readings, effects, found, judged);
-    if (base_.judged == Judged::displacement && has_unusual_gain(judged))
-      diagnosis.warnings.push_back(unusual_gain(judged.gain_percent));
+    if (base_.judged == Judged::displacement && found.empty() && has_unusual_gain(judged))
+      diagnosis.warnings.push_back(unusual_gain(
+          judged.gain_percent,
+          std::abs(judged.gain_percent) > 100 * (1 - limits::negligible_share) * base_.free_gain));
     if (!judged.unusual_log.empty()) diagnosis.warnings.push_back(unusual_log(judged.unusual_log));
     diagnosis.readings.push_back(std::move(judged));
   }
@@ -236,6 +239,14 @@ class Judge {
     return std::nullopt;
   }
 
+  /// The fit divides a gain change between the effect and the permitted gain deviations of the runs. Returns
+  /// the effect with the whole change.
+  [[nodiscard]] static FittedEffect with_whole_gain(const CauseSearch& search, FittedEffect effect) {
+    if (is_sized_by_both_gains(effect))
+      effect.numbers.front() += search.readings.nuisance(search.with(effect)).gain;
+    return effect;
+  }
+
   /// Returns true if the zero offset of the later logs [mm] differs significantly from the mean zero offset
   /// of the healthy runs. A difference is significant if a healthy run would exceed it in less than 5 % of
   /// the cases.
@@ -252,7 +263,7 @@ class Judge {
                                      const std::vector<ScoredEffect>& all, const Ties& ties,
                                      JudgedChange& judged) const {
     const LaterReadings& readings = search.readings;
-    const FittedEffect& best = scored.fit.fitted;
+    const FittedEffect best = with_whole_gain(search, scored.fit.fitted);
     const Binned added = readings.added({best});
     ChangeCause cause;
     cause.id = best.effect.id;

@@ -89,8 +89,11 @@ inline constexpr double tolerated_noise = 0.5;
 /// the gain, and the creep that remains from the previous run.
 inline constexpr double run_directions = 3;
 /// Standard deviation of the gain of a finger between runs without a change, as a share of the gain. It is
-/// used if there is only one healthy run, so the variation cannot be measured.
+/// used if there are too few healthy runs to measure the variation.
 inline constexpr double usual_gain_spread = 0.01;
+/// Number of runs with which `usual_gain_spread` counts beside the measured spread of the gain. Three runs
+/// are the smallest number whose spread can be distinguished from chance.
+inline constexpr double usual_gain_runs = 3;
 /// Length of the blocks that the bootstrap resamples [s]. A block lasts longer than the fast part of the
 /// creep.
 inline constexpr double block_s = 5;

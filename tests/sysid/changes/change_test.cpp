@@ -11,6 +11,7 @@
 #include "sysid/changes/change_result.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/changes/regulator.h"
+#include "sysid/logs/resampled_record.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::change_test {
@@ -490,6 +491,53 @@ TEST(Change, DifferentStartStateNeedsALargerError) {
   EXPECT_TRUE(std::any_of(other.warnings.begin(), other.warnings.end(), [](const std::string& warning) {
     return warning.find("No healthy log begins in the same state (pressurised or vented) as") == 0;
   }));
+}
+
+std::vector<Log> healthy_with_varied_gain(std::size_t runs) {
+  std::vector<Log> healthy{log_of({.gain = 0.2 * 1.01}, 1), log_of({.gain = 0.2 * 0.99}, 2), log_of({}, 3)};
+  healthy.resize(runs);
+  return healthy;
+}
+
+double mean_at_full_pressure(const Log& log) {
+  const std::vector<double>& command = log.pressure_command_kpa;
+  const double full_kpa = *std::max_element(command.begin(), command.end());
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    if (command[i] < 0.9 * full_kpa) continue;
+    sum += log.displacement_mm[i];
+    count += 1;
+  }
+  return sum / count;
+}
+
+TEST(Change, AGainChangeIsFoundAndWholeInEachNumber) {
+  for (const std::size_t runs : {2U, 3U}) {
+    const Log later = log_of({.gain = 0.2 * 0.9}, 5);
+    const auto d = diagnose_change(healthy_with_varied_gain(runs), {later});
+    ASSERT_TRUE(d) << d.error();
+    ASSERT_EQ(d->causes.size(), 1U) << runs << " healthy logs: " << change_sentence(*d);
+    const ChangeCause& cause = d->causes.front();
+    EXPECT_EQ(cause.id, "ageing");
+    EXPECT_NEAR(cause.size.value, -10, 1.5) << runs;
+    EXPECT_NEAR(100 * cause.fitted.numbers.front(), cause.size.value, 0.1) << runs;
+    const double before_mm = mean_at_full_pressure(later) / 0.9;
+    EXPECT_NEAR(cause.full_pressure_mm, 0.01 * cause.size.value * before_mm, 0.03 * before_mm) << runs;
+    EXPECT_NEAR(d->readings.back().gain_percent, 0, 0.1) << runs;
+  }
+}
+
+TEST(Change, ACoarserLaterLogIsComparedWithEquallyCoarseHealthyLogs) {
+  const std::vector<Log> healthy = healthy_with_varied_gain(3);
+  const auto same = diagnose_change(healthy, {thinned_log(log_of({}, 5), 5)});
+  ASSERT_TRUE(same) << same.error();
+  EXPECT_EQ(same->verdict, ChangeVerdict::unchanged) << change_sentence(*same);
+  EXPECT_GT(same->readings.back().loss_left, 0.1);
+  const auto less = diagnose_change(healthy, {thinned_log(log_of({.gain = 0.2 * 0.8}, 5), 5)});
+  ASSERT_TRUE(less) << less.error();
+  ASSERT_FALSE(less->causes.empty()) << change_sentence(*less);
+  EXPECT_EQ(less->causes.front().id, "ageing");
+  EXPECT_NEAR(less->causes.front().size.value, -20, 2);
 }
 
 /// Adds a displacement that jumps between two values at random times. No cause of the library explains it.
