@@ -127,6 +127,15 @@ class Judge {
     Eigen::VectorXd white = readings.white(found);
     judged.loss_before = judged.loss_left = per_bin(readings, white);
     for (std::size_t step = 0; step < most_causes; ++step) {
+      // The search for a further cause continues only if the remaining error exceeds the error that is
+      // expected in a further healthy run. For the first cause, a smaller error may be sufficient
+      // (admits_a_change()).
+      const double rms = readings.plain_rms(found);
+      const bool is_comparable = step == 0 && other_starts.empty();
+      const bool is_large = is_comparable ? spread_.admits_a_change(rms, judged.loss_left)
+                                          : spread_.is_exceeded(rms, judged.loss_left);
+      // The first search also runs for a small error, because the result lists all tested causes.
+      if (step > 0 && !is_large) break;
       say("search for changes in the later logs");
       std::vector<ScoredEffect> ranked =
           ranked_effects(readings, effects, found, tolerance, options_.threads);
@@ -139,14 +148,7 @@ class Judge {
                                   each.tolerance,
                                   {}});
       }
-      // The search for a further cause continues only if the remaining error exceeds the error that is
-      // expected in a further healthy run. For the first cause, a smaller error may be sufficient
-      // (admits_a_change()).
-      const double rms = readings.plain_rms(found);
-      const bool is_comparable = step == 0 && other_starts.empty();
-      if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
-                        : !spread_.is_exceeded(rms, judged.loss_left))
-        break;
+      if (!is_large) break;
       const std::optional<ChangeCause> cause =
           first_change({readings, found, white, healthy_, spread_, options_.seed}, std::move(ranked), judged);
       if (!cause) break;

@@ -43,19 +43,16 @@ TEST(Change, ZeroOffsetIsRelativeToTheHealthyLogs) {
   }
 }
 
-/// A payload changes the gain and the zero offset at the same time. If a change affects only the gain,
-/// payload must not be an alternative.
+bool may_be_a_weight(const ChangeCause& cause) {
+  return std::count(cause.alternatives.begin(), cause.alternatives.end(), "payload") == 1;
+}
+
+/// A payload changes the gain and the zero offset at the same time.
 TEST(Change, GainAndZeroChangeTogetherSuggestAPayload) {
-  const auto may_be_a_weight = [](const Finger& later) {
-    const ChangeDiagnosis d = changed(later);
-    EXPECT_FALSE(d.causes.empty()) << change_sentence(d);
-    if (d.causes.empty()) return false;
-    EXPECT_EQ(d.causes[0].id, "ageing");
-    const auto& alternatives = d.causes[0].alternatives;
-    return std::count(alternatives.begin(), alternatives.end(), "payload") == 1;
-  };
-  EXPECT_TRUE(may_be_a_weight({.gain = 0.2 * 0.95, .zero_mm = -0.4}));
-  EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
+  const ChangeDiagnosis d = changed({.gain = 0.2 * 0.95, .zero_mm = -0.4});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "ageing");
+  EXPECT_TRUE(may_be_a_weight(d.causes[0]));
 }
 
 /// Replaces the reading of sample i in the later logs by the reading of sample `sample(i)`, and returns the
@@ -382,8 +379,8 @@ TEST(Change, DelayedPressureIsATransportDelayInSeconds) {
   EXPECT_NEAR(d.causes[0].size.value, 0.1, 0.02);
 }
 
-TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
-  const auto json = result::json_of(fields_of(changed({.gain = 0.19})));
+void expect_keys_of_every_diagnosis(const ChangeDiagnosis& d) {
+  const auto json = result::json_of(fields_of(d));
   for (const char* const key : {"schema", "verdict", "causes", "alternatives", "noise_mm", "heldout_rmse_mm",
                                 "gain_percent", "unexplained_percent", "next_experiment", "warnings"})
     EXPECT_TRUE(json.contains(key)) << key;
@@ -445,8 +442,7 @@ TEST(ChangeResult, ParametersHaveTheDeprecatedNameBesideTheName) {
   EXPECT_EQ(parameters["levelling_per_kpa"], parameters["saturation_per_kpa"]);
 }
 
-TEST(Change, PageShowsNextStepsAndTheModelError) {
-  const ChangeDiagnosis d = changed({.gain = 0.19});
+void expect_page_with_next_steps(const ChangeDiagnosis& d) {
   const Page page = change_page(d, logs_of({}, 1), logs_of({}, 5), {});
   const std::string html = page.to_html();
   EXPECT_NE(html.find("Next steps for ageing"), std::string::npos);
@@ -457,6 +453,25 @@ TEST(Change, PageShowsNextStepsAndTheModelError) {
   const Chart& runs = page.figures()[1].charts[0][0];
   EXPECT_EQ(runs.x.categories.size(), d.readings.back().runs.size());
   EXPECT_EQ(runs.series.size(), 2U);
+}
+
+/// One diagnosis of a gain change, which takes seconds, serves several checks: of the cause, the searches,
+/// the JSON and the page.
+TEST(Change, SmallerGainIsAgeingInTheJsonAndOnThePage) {
+  ChangeOptions options;
+  std::size_t searches = 0;
+  options.progress = [&](const std::string& stage) {
+    if (stage == "search for changes in the later logs") ++searches;
+  };
+  const auto d = diagnose_change(logs_of({}, 1), logs_of({.gain = 0.2 * 0.95}, 5), options);
+  ASSERT_TRUE(d) << d.error();
+  ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
+  EXPECT_EQ(d->causes[0].id, "ageing");
+  EXPECT_FALSE(may_be_a_weight(d->causes[0])) << "only the gain has changed, but not the zero offset";
+  EXPECT_EQ(searches, d->causes.size())
+      << "the last cause leaves no error that a further search could reduce";
+  expect_keys_of_every_diagnosis(*d);
+  expect_page_with_next_steps(*d);
 }
 
 TEST(Change, TooShortOrMissingHealthyLogsAreRejected) {
