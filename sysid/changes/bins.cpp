@@ -84,14 +84,18 @@ double bin_s(const std::vector<Record>& records, double least_s) {
   return std::max(least_s, 2 * longest_s);
 }
 
+std::size_t bin_count(const Record& record, double bin_s) {
+  return static_cast<std::size_t>(record.length_s() / bin_s) + 1;
+}
+
 std::vector<double> binned(const Record& record, const std::vector<double>& series, double bin_s) {
-  const auto bins = static_cast<std::size_t>(record.length_s() / bin_s) + 1;
+  const std::size_t bins = bin_count(record, bin_s);
   std::vector<double> sum(bins, 0), count(bins, 0);
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (!std::isfinite(series[i])) continue;
-    const auto bin = static_cast<std::size_t>((record.time_s[i] - record.time_s.front()) / bin_s + 1e-9);
-    sum[std::min(bin, bins - 1)] += series[i];
-    count[std::min(bin, bins - 1)] += 1;
+    const std::size_t bin = std::min(bin_of(record, i, bin_s), bins - 1);
+    sum[bin] += series[i];
+    count[bin] += 1;
   }
   for (std::size_t b = 0; b < bins; ++b)
     sum[b] = count[b] > 0 ? sum[b] / count[b] : std::numeric_limits<double>::quiet_NaN();

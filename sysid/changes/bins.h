@@ -19,6 +19,13 @@ using Binned = std::vector<std::vector<double>>;
 /// intervals.
 [[nodiscard]] double bin_s(const std::vector<Record>& records, double least_s);
 
+/// Returns the number of bins of a record.
+[[nodiscard]] std::size_t bin_count(const Record& record, double bin_s);
+/// Returns the index of the bin of sample `i`. It may exceed the last bin by rounding.
+[[nodiscard]] inline std::size_t bin_of(const Record& record, std::size_t i, double bin_s) {
+  return static_cast<std::size_t>((record.time_s[i] - record.time_s.front()) / bin_s + 1e-9);
+}
+
 /// Returns the mean of the finite values in every bin.
 [[nodiscard]] std::vector<double> binned(const Record& record, const std::vector<double>& series,
                                          double bin_s);

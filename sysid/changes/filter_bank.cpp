@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
+
+#include "sysid/changes/bins.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -86,20 +89,98 @@ std::vector<SignalBank> banks(const Record& record, const Values& drive_kpa, Fil
   return all;
 }
 
+std::size_t columns_of(const std::vector<SignalBank>& all) {
+  std::size_t count = 0;
+  for (const SignalBank& bank : all) count += bank.signals.size() * bank.lags_s.size();
+  return count;
+}
+
+/// Weights of the last output, the last input and the present input in the output of a lag.
+struct LagWeights {
+  double output = 0, before = 0, now = 1;  ///< values for the time constant 0
+};
+LagWeights lag_weights(double dt_s, double time_constant_s) {
+  if (time_constant_s == 0) return {};
+  const double keep = std::exp(-dt_s / time_constant_s);
+  const double mean = dt_s > 0 ? (1 - keep) * time_constant_s / dt_s : 1;
+  return {keep, mean - keep, 1 - mean};
+}
+
+/// All filters of a bank, advanced together sample by sample. The outputs have the order of the columns.
+class FilterWalk {
+ public:
+  explicit FilterWalk(const SignalBank& bank)
+      : bank_(bank),
+        output_(static_cast<Eigen::Index>(bank.lags_s.size())),
+        before_(output_.size()),
+        now_(output_.size()),
+        outputs_(output_.size(), static_cast<Eigen::Index>(bank.signals.size())) {
+    Eigen::Index column = 0;
+    for (const Values& signal : bank.signals) outputs_.col(column++).setConstant(signal.front());
+  }
+
+  /// Computes the outputs at sample i >= 1.
+  void step(std::size_t i, double dt_s) {
+    if (dt_s != last_s_) {
+      Eigen::Index l = 0;
+      for (const double lag_s : bank_.lags_s) {
+        const LagWeights weights = lag_weights(dt_s, lag_s);
+        output_(l) = weights.output;
+        before_(l) = weights.before;
+        now_(l++) = weights.now;
+      }
+      last_s_ = dt_s;
+    }
+    Eigen::Index column = 0;
+    for (const Values& signal : bank_.signals) {
+      auto out = outputs_.col(column++);
+      out = output_ * out + before_ * signal[i - 1] + now_ * signal[i];
+    }
+  }
+  /// Returns the outputs: one row per time constant and one column per signal.
+  [[nodiscard]] const Eigen::ArrayXXd& outputs() const { return outputs_; }
+
+ private:
+  const SignalBank& bank_;
+  Eigen::ArrayXd output_, before_, now_;  ///< weights of the last duration, by time constant
+  Eigen::ArrayXXd outputs_;
+  double last_s_ = -1;
+};
+
+/// Averages the outputs of a bank over bins. The columns of `means` are the outputs.
+void average(const Record& record, const SignalBank& bank, double bin_s, Eigen::Ref<Eigen::MatrixXd> means) {
+  FilterWalk walk(bank);
+  Eigen::ArrayXXd sums = Eigen::ArrayXXd::Zero(walk.outputs().rows(), walk.outputs().cols());
+  Eigen::Index open = 0;
+  double count = 0;
+  const auto close = [&] {
+    if (count > 0) means.row(open) = (sums / count).reshaped().transpose();
+    sums.setZero();
+    count = 0;
+  };
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const Eigen::Index bin = std::min(static_cast<Eigen::Index>(bin_of(record, i, bin_s)), means.rows() - 1);
+    if (bin != open) close();
+    open = bin;
+    if (i > 0) walk.step(i, record.duration_s[i]);
+    sums += walk.outputs();
+    count += 1;
+  }
+  close();
+}
+
 }  // namespace
 
 std::vector<double> lagged(const Record& record, const std::vector<double>& signal, double time_constant_s) {
   if (time_constant_s == 0) return signal;
   std::vector<double> out(signal.size(), signal.front());
-  double last_s = -1, keep = 0, mean = 0;
+  double last_s = -1;
+  LagWeights weights;
   for (std::size_t i = 1; i < signal.size(); ++i) {
     const double dt = record.duration_s[i];
-    if (dt != last_s) {
-      keep = std::exp(-dt / time_constant_s);
-      mean = dt > 0 ? (1 - keep) * time_constant_s / dt : 1;
-      last_s = dt;
-    }
-    out[i] = keep * out[i - 1] + (mean - keep) * signal[i - 1] + (1 - mean) * signal[i];
+    if (dt != last_s) weights = lag_weights(dt, time_constant_s);
+    last_s = dt;
+    out[i] = weights.output * out[i - 1] + weights.before * signal[i - 1] + weights.now * signal[i];
   }
   return out;
 }
@@ -107,9 +188,8 @@ std::vector<double> lagged(const Record& record, const std::vector<double>& sign
 Eigen::MatrixXd filter_columns(const Record& record, const std::vector<double>& drive_kpa, FilterKind kind,
                                double largest_kpa) {
   const std::vector<SignalBank> all = banks(record, drive_kpa, kind, largest_kpa);
-  std::size_t count = 0;
-  for (const SignalBank& bank : all) count += bank.signals.size() * bank.lags_s.size();
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(record.size()), static_cast<Eigen::Index>(count));
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(record.size()),
+                          static_cast<Eigen::Index>(columns_of(all)));
   Eigen::Index column = 0;
   for (const SignalBank& bank : all) {
     for (const Values& signal : bank.signals) {
@@ -120,6 +200,21 @@ Eigen::MatrixXd filter_columns(const Record& record, const std::vector<double>& 
     }
   }
   return columns;
+}
+
+Eigen::MatrixXd binned_filter_columns(const Record& record, const std::vector<double>& drive_kpa,
+                                      FilterKind kind, double largest_kpa, double bin_s) {
+  const std::vector<SignalBank> all = banks(record, drive_kpa, kind, largest_kpa);
+  Eigen::MatrixXd means = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(bin_count(record, bin_s)),
+                                                    static_cast<Eigen::Index>(columns_of(all)),
+                                                    std::numeric_limits<double>::quiet_NaN());
+  Eigen::Index first = 0;
+  for (const SignalBank& bank : all) {
+    const auto columns = static_cast<Eigen::Index>(bank.signals.size() * bank.lags_s.size());
+    average(record, bank, bin_s, means.middleCols(first, columns));
+    first += columns;
+  }
+  return means;
 }
 
 Eigen::VectorXd weighted_filters(const Record& record, const std::vector<double>& drive_kpa, FilterKind kind,

@@ -34,6 +34,13 @@ inline constexpr std::size_t slow_lags = 4;
 [[nodiscard]] Eigen::MatrixXd filter_columns(const Record& record, const std::vector<double>& drive_kpa,
                                              FilterKind kind, double largest_kpa);
 
+/// Returns the columns of filter_columns(), each averaged over bins by binned(). The computation does not
+/// store the columns themselves.
+/// @param drive_kpa  finite values, as for filter_columns().
+[[nodiscard]] Eigen::MatrixXd binned_filter_columns(const Record& record,
+                                                    const std::vector<double>& drive_kpa, FilterKind kind,
+                                                    double largest_kpa, double bin_s);
+
 /// Returns the product of filter_columns() and `weights`. The computation needs one filter per time constant
 /// instead of one filter per column.
 [[nodiscard]] Eigen::VectorXd weighted_filters(const Record& record, const std::vector<double>& drive_kpa,

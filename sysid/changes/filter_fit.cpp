@@ -130,7 +130,8 @@ class FilterBank {
  private:
   void add(const std::vector<Record>& records, std::size_t r, const Units& units, FilterKind kind) {
     const Record& record = records[r];
-    const Eigen::MatrixXd filters = filter_columns(record, record.drive_kpa, kind, largest_kpa_);
+    const Eigen::MatrixXd filters =
+        binned_filter_columns(record, record.drive_kpa, kind, largest_kpa_, bin_s_);
     filter_count_ = filters.cols();
     const std::vector<double> readings = binned(record, record.reading_mm, bin_s_);
     const Eigen::Index first = columns_.rows();
@@ -144,10 +145,8 @@ class FilterBank {
     columns_.conservativeResize(count, filter_count_ + static_cast<Eigen::Index>(records.size()));
     columns_.bottomRows(count - first).setZero();
     for (Eigen::Index c = 0; c < filter_count_; ++c) {
-      const std::vector<double> series =
-          binned(record, {filters.col(c).begin(), filters.col(c).end()}, bin_s_);
       for (Eigen::Index i = first; i < count; ++i) {
-        const double v = series[rows_[static_cast<std::size_t>(i)].bin];
+        const double v = filters(static_cast<Eigen::Index>(rows_[static_cast<std::size_t>(i)].bin), c);
         columns_(i, c) = std::isfinite(v) ? v : 0;
       }
     }

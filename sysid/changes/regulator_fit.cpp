@@ -62,17 +62,15 @@ class BinnedReadings {
     Eigen::VectorXd target = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins_));
     Eigen::Index first = 0;
     for (std::size_t r = 0; r < records_.size(); ++r) {
-      const Record driven = behind(regulator, records_[r]);
-      const Eigen::MatrixXd filters = seen(driven);
+      const Eigen::MatrixXd filters =
+          seen(records_[r], regulated(regulator, records_[r], records_[r].drive_kpa));
       if (r == 0)
         columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bins_),
                                         filters.cols() + static_cast<Eigen::Index>(records_.size()));
       const auto own = static_cast<Eigen::Index>(readings_[r].size());
-      for (Eigen::Index c = 0; c < filters.cols(); ++c) {
-        const std::vector<double> series = with_bins(
-            binned(driven, {filters.col(c).begin(), filters.col(c).end()}, bin_s_), readings_[r].size());
-        for (Eigen::Index b = 0; b < own; ++b) columns(first + b, c) = series[static_cast<std::size_t>(b)];
-      }
+      // A thinned record may have one bin less than the full record. The last row is then repeated.
+      for (Eigen::Index b = 0; b < own; ++b)
+        columns.row(first + b).head(filters.cols()) = filters.row(std::min(b, filters.rows() - 1));
       for (Eigen::Index b = 0; b < own; ++b) {
         const double reading = readings_[r][static_cast<std::size_t>(b)];
         columns(first + b, filters.cols() + static_cast<Eigen::Index>(r)) = largest_kpa_;
@@ -93,11 +91,12 @@ class BinnedReadings {
   }
 
  private:
-  [[nodiscard]] Eigen::MatrixXd seen(const Record& driven) const {
+  /// Returns the signals that the sensor can have seen behind the regulator, averaged over bins.
+  [[nodiscard]] Eigen::MatrixXd seen(const Record& record, const std::vector<double>& drive_kpa) const {
     if (read_by_ == ReadBy::finger)
-      return filter_columns(driven, driven.drive_kpa, FilterKind::finger, largest_kpa_);
-    return Eigen::Map<const Eigen::VectorXd>(driven.drive_kpa.data(),
-                                             static_cast<Eigen::Index>(driven.drive_kpa.size()));
+      return binned_filter_columns(record, drive_kpa, FilterKind::finger, largest_kpa_, bin_s_);
+    const std::vector<double> means = binned(record, drive_kpa, bin_s_);
+    return Eigen::Map<const Eigen::VectorXd>(means.data(), static_cast<Eigen::Index>(means.size()));
   }
 
   double largest_kpa_;

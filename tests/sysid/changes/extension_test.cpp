@@ -6,6 +6,7 @@
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
+#include "sysid/changes/bins.h"
 #include "sysid/changes/filter_bank.h"
 #include "tests/sysid/changes/finger.h"
 
@@ -132,6 +133,41 @@ TEST(FilterBank, WeightedFiltersEqualColumnsTimesWeights) {
     const Eigen::MatrixXd columns = filter_columns(r, r.drive_kpa, kind, 60);
     const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(columns.cols(), -1, 2);
     EXPECT_TRUE(weighted_filters(r, r.drive_kpa, kind, 60, weights).isApprox(columns * weights, 1e-9));
+  }
+}
+
+TEST(FilterBank, BinnedColumnsAreBitForBitTheMeansOfTheColumns) {
+  Record regular = record(), irregular = record();
+  irregular.supply_kpa.assign(irregular.size(), 500.0);
+  for (std::size_t i = 0; i < irregular.size(); ++i) {
+    regular.drive_kpa[i] = 30 + 25 * std::sin(0.02 * static_cast<double>(i));
+    irregular.drive_kpa[i] = regular.drive_kpa[i];
+    irregular.supply_kpa[i] -= static_cast<double>(i % 7);
+    irregular.time_s[i] += i % 3 == 0 ? 0 : 0.004;
+    if (i > 0) irregular.duration_s[i] = irregular.time_s[i] - irregular.time_s[i - 1];
+  }
+  for (const Record& r : {regular, irregular}) {
+    for (const double bin_s : {0.004, 0.1}) {  // some of the short bins contain no sample
+      for (const FilterKind kind : {FilterKind::valve, FilterKind::finger, FilterKind::valve_and_finger}) {
+        const Eigen::MatrixXd columns = filter_columns(r, r.drive_kpa, kind, 60);
+        const Eigen::MatrixXd means = binned_filter_columns(r, r.drive_kpa, kind, 60, bin_s);
+        ASSERT_EQ(means.cols(), columns.cols());
+        std::size_t equal = 0, empty = 0;
+        for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+          const std::vector<double> expected =
+              binned(r, {columns.col(c).begin(), columns.col(c).end()}, bin_s);
+          ASSERT_EQ(means.rows(), static_cast<Eigen::Index>(expected.size()));
+          for (Eigen::Index b = 0; b < means.rows(); ++b) {
+            const double mean = expected[static_cast<std::size_t>(b)];
+            if (means(b, c) == mean) ++equal;
+            if (std::isnan(means(b, c)) && std::isnan(mean)) ++empty;
+          }
+        }
+        EXPECT_EQ(equal + empty, static_cast<std::size_t>(means.size()));
+        EXPECT_GT(equal, 0U);
+        EXPECT_EQ(empty > 0, bin_s < 0.01);
+      }
+    }
   }
 }
 
