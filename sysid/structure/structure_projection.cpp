@@ -1,6 +1,7 @@
 #include "sysid/structure/structure_projection.h"
 
 #include <limits>
+#include <utility>
 
 #include "base/thread_budget.h"
 #include "sysid/fitting/bounded_solve.h"
@@ -43,52 +44,52 @@ class Projector {
   }
 
   Projection run(const Eigen::VectorXd* near) {
-    Eigen::VectorXd x;
+    Candidate best;
     if (map_.curvature() == 0) {
-      x = solve(p_.columns, p_.readings_mm);
+      best = at(solve(p_.columns, p_.readings_mm));
     } else {
-      x = near != nullptr && near->size() == p_.columns.cols() ? *near : first_guess();
-      double last = cost(x);
+      best = at(near != nullptr && near->size() == p_.columns.cols() ? *near : first_guess());
       for (int i = 0; i < most_steps; ++i) {
         end_if_cancelled();
-        const Eigen::VectorXd next = linearised(inner(x));
-        Eigen::VectorXd trial = next;
-        double now = cost(trial);
-        for (int halving = 0; halving < 6 && !(now <= last); ++halving) {
-          trial = (x + trial) / 2;
-          now = cost(trial);
-        }
-        if (!(now <= last)) break;
-        x = trial;
-        const bool settled = last - now <= settled_share * last;
-        last = now;
+        Candidate trial = at(linearised(best.inner_mm));
+        for (int halving = 0; halving < 6 && !(trial.cost <= best.cost); ++halving)
+          trial = at((best.weights + trial.weights) / 2);
+        if (!(trial.cost <= best.cost)) break;
+        const bool settled = best.cost - trial.cost <= settled_share * best.cost;
+        best = std::move(trial);
         if (settled) break;
       }
     }
     Projection result;
-    result.error_mm = errors(x);
-    result.penalty_mm = ridge_.cwiseSqrt().cwiseProduct(x);
-    result.mean_square_mm2 = result.error_mm.squaredNorm() / fitted_;
-    result.weights = std::move(x);
+    result.penalty_mm = ridge_.cwiseSqrt().cwiseProduct(best.weights);
+    result.mean_square_mm2 = best.error_mm.squaredNorm() / fitted_;
+    result.error_mm = std::move(best.error_mm);
+    result.weights = std::move(best.weights);
     return result;
   }
 
  private:
   [[nodiscard]] Eigen::Index own() const { return p_.layout.own(); }
-  [[nodiscard]] Eigen::VectorXd inner(const Eigen::VectorXd& x) const {
-    return p_.columns.leftCols(own()) * x.head(own());
+  /// Weights, and the quantities that follow from them.
+  struct Candidate {
+    Eigen::VectorXd weights;
+    Eigen::VectorXd inner_mm;  ///< input of the characteristic
+    Eigen::VectorXd error_mm;  ///< prediction minus readings
+    double cost = 0;           ///< sum of the squared errors and of the penalties
+  };
+  [[nodiscard]] Candidate at(Eigen::VectorXd weights) const {
+    Candidate candidate;
+    candidate.inner_mm = p_.columns.leftCols(own()) * weights.head(own());
+    candidate.error_mm = candidate.inner_mm.unaryExpr([this](double z) { return map_.value(z); }) +
+                         beside(weights) - p_.readings_mm;
+    candidate.cost = candidate.error_mm.squaredNorm() + ridge_.dot(weights.cwiseAbs2());
+    candidate.weights = std::move(weights);
+    return candidate;
   }
   [[nodiscard]] Eigen::VectorXd beside(const Eigen::VectorXd& x) const {
     const Eigen::Index n = p_.columns.cols() - own();
     return p_.columns.rightCols(n) * x.tail(n);
   }
-  [[nodiscard]] Eigen::VectorXd errors(const Eigen::VectorXd& x) const {
-    return inner(x).unaryExpr([this](double z) { return map_.value(z); }) + beside(x) - p_.readings_mm;
-  }
-  [[nodiscard]] double cost(const Eigen::VectorXd& x) const {
-    return errors(x).squaredNorm() + ridge_.dot(x.cwiseAbs2());
-  }
-
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) const {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
     gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
