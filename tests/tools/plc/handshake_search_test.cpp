@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <deque>
 #include <functional>
 #include <optional>
-#include <set>
+#include <stdexcept>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -113,6 +115,11 @@ struct Line {
   int asked = -1;  // index of the command in the list of all commands; -1: the line belongs to no command
 };
 
+struct Answer {
+  std::uint64_t id = 0;
+  bool accepted = false;  ///< false: the daemon is busy
+};
+
 struct World {
   explicit World(const Settings& with) : settings(&with), gateway(std::in_place, with) {}
 
@@ -126,8 +133,8 @@ struct World {
   // State of the simulated daemon.
   bool runs = false;
   bool paused = false;
-  std::deque<Line> lines;
-  std::deque<Json> answers;
+  std::vector<Line> lines;      // the oldest line first
+  std::vector<Answer> answers;  // the oldest answer first
   // Data that the search records for its checks.
   int halts = 0;  // number of executed stops and vents, including stops because of a silent master
   std::optional<Frame> waiting;
@@ -308,21 +315,23 @@ struct World {
   }
   void daemon_takes(bool busy) {
     const Line line = lines.front();
-    lines.pop_front();
+    lines.erase(lines.begin());
+    answers.push_back({line.id, !busy});
     if (busy) {
       if (line.asked >= 0) commands[static_cast<std::size_t>(line.asked)].over = true;
-      answers.push_back({{"id", line.id}, {"ok", false}, {"error", {{"code", "busy"}}}});
       return;
     }
     if (line.command == "stop") {
       owed = false;
       stopped_since_beat = true;
     }
-    answers.push_back({{"id", line.id}, {"ok", true}});
   }
   void answer_arrives() {
-    gateway->on_daemon_line(answers.front(), now);
-    answers.pop_front();
+    const Answer answer = answers.front();
+    answers.erase(answers.begin());
+    Json line{{"id", answer.id}, {"ok", answer.accepted}};
+    if (!answer.accepted) line["error"] = {{"code", "busy"}};
+    gateway->on_daemon_line(line, now);
   }
   void daemon_says_state() {
     static const Json state =
@@ -364,9 +373,13 @@ struct World {
 
 class Key {
  public:
+  Key() { bytes_.reserve(1024); }
   Key& operator<<(std::int64_t value) {
-    text_ += std::to_string(value);
-    text_ += ' ';
+    const auto kept = static_cast<std::int32_t>(value);
+    if (kept != value) throw std::out_of_range("a value of the state has more than 32 bits");
+    std::array<char, sizeof kept> bytes;
+    std::memcpy(bytes.data(), &kept, sizeof kept);
+    bytes_.append(bytes.data(), bytes.size());
     return *this;
   }
   Key& operator<<(const std::optional<std::uint16_t>& value) { return *this << (value ? *value : -1); }
@@ -374,14 +387,14 @@ class Key {
     for (const std::uint16_t word : frame.words) *this << word;
     return *this << frame.command;
   }
-  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
  private:
-  std::string text_;
+  std::string bytes_;
 };
 
-/// Returns a text that contains all parts of the state on which the later actions depend. The text contains
-/// times relative to the present time, in steps. The text contains the rank of each id in place of the id.
+/// Returns bytes that contain all parts of the state on which the later actions depend. They contain times
+/// relative to the present time, in steps. They contain the rank of each id in place of the id.
 std::string World::key() const {
   Key key;
   const Handshake& handshake = gateway->handshake();
@@ -425,13 +438,13 @@ std::string World::key() const {
     key << command.code << command.counter << command.executed << command.over << command.reported_refused;
   key << runs << paused << static_cast<int>(lines.size());
   for (const Line& line : lines) key << line.command.front() << line.asked;
-  for (const Json& answer : answers) key << answer["ok"].get<bool>();
+  for (const Answer& answer : answers) key << answer.accepted;
   key << waiting.has_value();
   if (waiting) key << *waiting << (waiting->halts == halts);
   key << watched << owed << stopped_since_beat << beat_steps;
   for (std::size_t plc = 0; plc < plcs; ++plc) key << left.commands[plc] << left.connections[plc];
   key << left.master_deaths << left.gateway_deaths << left.daemon_deaths << left.pauses << left.busy;
-  return key.text();
+  return key.bytes();
 }
 
 std::string World::lost_for_good() const {
@@ -488,72 +501,77 @@ std::string World::lost_for_good() const {
 }
 
 struct Step {
-  std::string name;
+  const char* who;
+  const char* what;
   std::function<void(World&)> take;
+
+  [[nodiscard]] std::string name() const { return std::string(who) + what; }
 };
 
 /// Returns the actions that are possible in a given state.
 std::vector<Step> steps_from(World& world) {
+  constexpr std::array connection_names{"on connection 0, ", "on connection 1, "};
+  static_assert(connection_names.size() == plcs, "the gateway permits one connection per master");
   std::vector<Step> steps;
-  const auto add = [&](bool possible, std::string name, std::function<void(World&)> take) {
-    if (possible) steps.push_back({std::move(name), std::move(take)});
+  const auto add = [&](bool possible, const char* who, const char* what, auto take) {
+    if (possible) steps.push_back({who, what, take});
   };
   for (std::size_t plc = 0; plc < plcs; ++plc) {
-    const std::string who = plc == 0 ? "the first master " : "the second master ";
+    const char* const who = plc == 0 ? "the first master " : "the second master ";
     const Plc& master = world.masters[plc];
     const Wire* const wire = world.wire_of(plc);
     const bool free = wire != nullptr && !wire->flying;
-    add(world.left.connections[plc] > 0 && master.alive, who + "connects", [=](World& w) {
+    add(world.left.connections[plc] > 0 && master.alive, who, "connects", [=](World& w) {
       --w.left.connections[plc];
       w.connect(plc);
     });
-    add(free && master.progress != Progress::begins, who + "writes its block",
+    add(free && master.progress != Progress::begins, who, "writes its block",
         [=](World& w) { w.write(plc); });
     const bool answered = free && (master.progress == Progress::begins || master.answered_on == wire->id);
-    add(answered && master.alive, who + "reads the outcome of its command", [=](World& w) { w.look(plc); });
+    add(answered && master.alive, who, "reads the outcome of its command", [=](World& w) { w.look(plc); });
     const bool ready = master.progress == Progress::ready;
     for (const std::uint16_t code : {start, vent}) {
       add(master.alive && world.left.commands[plc] > 0 &&
               (ready || (master.progress == Progress::waits && (code == vent || world.left.impatient))),
-          who + (code == start ? "requests a start" : "requests a vent"), [=](World& w) {
+          who, code == start ? "requests a start" : "requests a vent", [=](World& w) {
             --w.left.commands[plc];
             w.ask(plc, code);
           });
     }
-    add(world.left.master_deaths > 0 && master.alive, who + "dies", [=](World& w) {
+    add(world.left.master_deaths > 0 && master.alive, who, "dies", [=](World& w) {
       --w.left.master_deaths;
       w.masters[plc].alive = false;
     });
   }
   for (std::size_t i = 0; i < world.wires.size(); ++i) {
-    const std::string which = "the block of connection " + std::to_string(i);
-    add(world.wires[i].flying.has_value(), which + " arrives", [=](World& w) { w.deliver(i); });
-    add(world.wires[i].flying && !world.wires[i].half, "half of " + which + " arrives",
+    const char* const which = connection_names.at(i);
+    add(world.wires[i].flying.has_value(), which, "a block arrives", [=](World& w) { w.deliver(i); });
+    add(world.wires[i].flying && !world.wires[i].half, which, "half of a block arrives",
         [=](World& w) { w.deliver_half(w.wires[i]); });
   }
-  add(true, "the gateway runs one turn", [](World& w) { w.turn(); });
-  add(world.left.time, "time passes", [](World& w) { w.pass(); });
-  add(world.left.gateway_deaths > 0, "the gateway dies and restarts", [](World& w) {
+  add(true, "the gateway ", "runs one turn", [](World& w) { w.turn(); });
+  add(world.left.time, "time ", "passes", [](World& w) { w.pass(); });
+  add(world.left.gateway_deaths > 0, "the gateway ", "dies and restarts", [](World& w) {
     --w.left.gateway_deaths;
     w.gateway_dies();
   });
-  add(!world.runs, "a daemon starts", [](World& w) { w.daemon_starts(); });
-  add(world.runs && world.left.daemon_deaths > 0, "the daemon dies", [](World& w) {
+  add(!world.runs, "a daemon ", "starts", [](World& w) { w.daemon_starts(); });
+  add(world.runs && world.left.daemon_deaths > 0, "the daemon ", "dies", [](World& w) {
     --w.left.daemon_deaths;
     w.daemon_dies();
   });
-  add(world.runs && !world.paused && world.left.pauses > 0, "the daemon is paused", [](World& w) {
+  add(world.runs && !world.paused && world.left.pauses > 0, "the daemon ", "is paused", [](World& w) {
     --w.left.pauses;
     w.paused = true;
   });
-  add(world.paused, "the daemon continues", [](World& w) { w.paused = false; });
+  add(world.paused, "the daemon ", "continues", [](World& w) { w.paused = false; });
   const bool hears = world.runs && !world.paused && !world.lines.empty();
-  add(hears, "the daemon executes the command", [](World& w) { w.daemon_takes(false); });
-  add(hears && world.left.busy > 0, "the daemon is busy", [](World& w) {
+  add(hears, "the daemon ", "executes the command", [](World& w) { w.daemon_takes(false); });
+  add(hears && world.left.busy > 0, "the daemon ", "is busy", [](World& w) {
     --w.left.busy;
     w.daemon_takes(true);
   });
-  add(!world.answers.empty(), "the daemon's answer arrives", [](World& w) { w.answer_arrives(); });
+  add(!world.answers.empty(), "the daemon's ", "answer arrives", [](World& w) { w.answer_arrives(); });
   return steps;
 }
 
@@ -575,7 +593,7 @@ Found search(const Budget& budget) {
   std::vector<Reached> reached{{0, ""}};
   std::deque<std::pair<World, std::size_t>> open;
   open.emplace_back(first, 0);
-  std::set<std::string> seen{first.key()};
+  std::unordered_set<std::string> seen{first.key()};
   Found found;
   const auto told = [&](std::string broken, std::size_t last, const std::string& by) {
     std::vector<std::string> path{by};
@@ -593,11 +611,11 @@ Found search(const Budget& budget) {
       if (to.broken.empty() && !seen.insert(to.key()).second) continue;
       if (to.broken.empty()) to.broken = to.lost_for_good();
       if (!to.broken.empty()) {
-        found.broken = told(to.broken, index, taken.name);
+        found.broken = told(to.broken, index, taken.name());
         found.states = seen.size();
         return found;
       }
-      reached.push_back({index, taken.name});
+      reached.push_back({index, taken.name()});
       open.emplace_back(std::move(to), reached.size() - 1);
     }
   }
