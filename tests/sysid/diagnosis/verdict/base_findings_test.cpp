@@ -67,42 +67,17 @@ bool names(const BaseFindings& base, std::string_view id) {
                      [&](const NamedCause& n) { return n.cause.id == id; });
 }
 
-TEST(BaseFindings, DifferentLoopShapeIsNamed) {
-  const Found found = found_in(plays());
-  ASSERT_TRUE(found.base);
-  const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
+bool has_backlash(const BaseFindings& base) {
+  const auto shape = std::find_if(base.named.begin(), base.named.end(),
                                   [](const NamedCause& n) { return n.cause.id == "hysteresis_shape"; });
-  ASSERT_NE(shape, found.base->named.end()) << found.base->description;
-  EXPECT_GE(shape->inclusion, 0.95);
-  EXPECT_GT(shape->gain_mm2.lower, 0);
-  EXPECT_LT(rmse_mm(found.base->losses), 0.5 * rmse_mm(found.plain.base_losses));
-  EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
-}
-
-/// A set of play operators without an elastic operator does not move at first after a reversal. This looks
-/// like a backlash. With an elastic operator, the set moves at once.
-TEST(BaseIngredients, BacklashIsAnAlternativeWithoutElasticOperator) {
-  const auto has_backlash = [](const Found& found) {
-    const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
-                                    [](const NamedCause& n) { return n.cause.id == "hysteresis_shape"; });
-    return shape != found.base->named.end() &&
-           std::any_of(shape->alternatives.begin(), shape->alternatives.end(),
-                       [](const Cause& alternative) { return alternative.id == causes::Backlash::id; });
-  };
-  const Found elastic = found_in(plays());
-  ASSERT_TRUE(elastic.base);
-  EXPECT_FALSE(has_backlash(elastic));
-  const Found slack = found_in(model::with_block(plays(), model::block_of<model::Backlash>({{"gap_mm", 3}})));
-  ASSERT_TRUE(slack.base);
-  EXPECT_TRUE(has_backlash(slack)) << slack.base->description << ", elastic share "
-                                   << elastic_share(slack.base->fit.point.model);
+  return shape != base.named.end() &&
+         std::any_of(shape->alternatives.begin(), shape->alternatives.end(),
+                     [](const Cause& alternative) { return alternative.id == causes::Backlash::id; });
 }
 
 /// On the given structure, the error is too large to name a cause. In this case, a slightly smaller loss is
 /// sufficient to prefer the alternative structure.
-TEST(BaseFindings, SmallerLossSufficesIfTheGivenStructureNamesNoCause) {
-  Found found = found_in(plays());
-  ASSERT_TRUE(found.base);
+void expect_smaller_loss_suffices_if_the_given_structure_names_no_cause(Found found) {
   Selection plain = found.plain;
   plain.extended_losses = found.base->losses;
   for (double& loss : plain.extended_losses) loss *= 1.05;
@@ -116,9 +91,7 @@ TEST(BaseFindings, SmallerLossSufficesIfTheGivenStructureNamesNoCause) {
 /// On the given structure, two causes are necessary to explain the data. On the alternative structure, one of
 /// them is sufficient, because its hysteresis loops explain the remaining error. The loss of the alternative
 /// structure may then be slightly larger.
-TEST(BaseFindings, AlternativeWithFewerCausesMayHaveALargerLoss) {
-  Found found = found_in(plays());
-  ASSERT_TRUE(found.base);
+void expect_fewer_causes_permit_a_larger_loss(Found found) {
   Selection plain = found.plain;
   plain.extended_losses = found.base->losses;
   for (double& loss : plain.extended_losses) loss /= 1.2;
@@ -135,6 +108,31 @@ TEST(BaseFindings, AlternativeWithFewerCausesMayHaveALargerLoss) {
   for (double& loss : plain.extended_losses) loss /= 1.6;
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
       << "the unexplained error of the alternative structure is much larger than that of the given structure";
+}
+
+/// The search for the alternative structure takes seconds, so one search serves several checks.
+TEST(BaseFindings, DifferentLoopShapeIsNamed) {
+  const Found found = found_in(plays());
+  ASSERT_TRUE(found.base);
+  const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
+                                  [](const NamedCause& n) { return n.cause.id == "hysteresis_shape"; });
+  ASSERT_NE(shape, found.base->named.end()) << found.base->description;
+  EXPECT_GE(shape->inclusion, 0.95);
+  EXPECT_GT(shape->gain_mm2.lower, 0);
+  EXPECT_LT(rmse_mm(found.base->losses), 0.5 * rmse_mm(found.plain.base_losses));
+  EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
+  EXPECT_FALSE(has_backlash(*found.base)) << "a set of play operators with an elastic operator moves at once";
+  expect_smaller_loss_suffices_if_the_given_structure_names_no_cause(found);
+  expect_fewer_causes_permit_a_larger_loss(found);
+}
+
+/// A set of play operators without an elastic operator does not move at first after a reversal. This looks
+/// like a backlash.
+TEST(BaseIngredients, BacklashIsAnAlternativeWithoutElasticOperator) {
+  const Found slack = found_in(model::with_block(plays(), model::block_of<model::Backlash>({{"gap_mm", 3}})));
+  ASSERT_TRUE(slack.base);
+  EXPECT_TRUE(has_backlash(*slack.base))
+      << slack.base->description << ", elastic share " << elastic_share(slack.base->fit.point.model);
 }
 
 /// For slow commands, a delay and a lag have nearly the same effect, so each of them can compensate for the
