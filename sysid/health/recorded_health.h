@@ -10,7 +10,7 @@
 
 #include "document/problem.h"
 #include "sysid/health/health_page.h"
-#include "sysid/health/run_search.h"
+#include "sysid/health/scored_run.h"
 
 namespace softgrip::sysid::health {
 

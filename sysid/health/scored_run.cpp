@@ -1,15 +1,86 @@
 #include "sysid/health/scored_run.h"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
 #include "base/json.h"
+#include "base/statistics.h"
+#include "base/thread_budget.h"
+#include "sysid/recordings/recording.h"
 
 namespace softgrip::sysid::health {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+namespace fs = std::filesystem;
+
+/// Returns the name of the folder or file to which a path leads.
+std::string name_of(const std::string& path) {
+  return fs::path(path).lexically_normal().filename().string();
+}
+
+bool is_run(const fs::path& path) {
+  std::error_code ignored;
+  return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
+}
+
+/// Returns the median temperature of a run. One value per run is enough, because the temperature of a finger
+/// hardly changes during a grip.
+double temperature_of(const sysid::Log& log) {
+  std::vector<double> known;
+  for (const double temperature_c : log.temperature_c) {
+    if (std::isfinite(temperature_c)) known.push_back(temperature_c);
+  }
+  return known.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span<double>(known));
+}
+
+void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores) {
+  document::Problems problems;
+  const std::string name = name_of(path);
+  const auto recording = read_recording(path, problems);
+  if (!recording) {
+    scores.skipped.push_back({name, problems.empty() ? recording.error() : problems.list().front().message});
+    return;
+  }
+  if (recording->unfinished) {
+    scores.skipped.push_back({name, "the recording is not finished"});
+    return;
+  }
+  // A recording of a fault or of a whole day belongs to no sequence, so there are no recordings with which it
+  // can be compared.
+  if (recording->recipe.empty() && !recording->software_version.empty()) {
+    scores.skipped.push_back({name,
+                              "the recording does not belong to a single sequence (with `mode: sequences`, "
+                              "the recorder writes one recording per sequence)"});
+    return;
+  }
+  for (std::size_t c = 0; c < recording->channels.size(); ++c) {
+    const std::string& finger = recording->channels[c].channel;
+    const FingerBase* const base = base_of(finger);
+    if (base == nullptr) {
+      scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, {}, {}});
+      continue;
+    }
+    const model::OutputUnit unit = recording->channels[c].output_unit;
+    if (unit != base->base.model.output_unit) {
+      scores.skipped.push_back({name, "the readings of the recording are in " + std::string(name_of(unit)) +
+                                          ", but the baseline of `" + finger + "` is in " +
+                                          std::string(name_of(base->base.model.output_unit))});
+      continue;
+    }
+    scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, base->id,
+                           score_of(*recording, c, base->base), temperature_of(recording->channels[c])});
+  }
+}
 
 }  // namespace
 
@@ -50,6 +121,67 @@ std::string line_of(const ScoredRun& run) {
   }
   if (std::isfinite(run.temperature_c)) line["temperature_c"] = run.temperature_c;
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> find_runs(const std::vector<std::string>& paths) {
+  std::vector<std::string> runs;
+  for (const std::string& path : paths) {
+    if (is_run(path)) {
+      runs.push_back(path);
+      continue;
+    }
+    std::vector<std::string> inside;
+    std::error_code unreadable;
+    for (const auto& entry : fs::directory_iterator(path, unreadable)) {
+      if (entry.is_directory() && is_run(entry.path())) inside.push_back(entry.path().string());
+    }
+    std::sort(inside.begin(), inside.end());
+    runs.insert(runs.end(), inside.begin(), inside.end());
+  }
+  return runs;
+}
+
+std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf& base_of) {
+  std::map<std::pair<std::string, std::string>, std::size_t> place;
+  std::vector<ScoredRun> kept;
+  for (const ScoredRun& run : runs) {
+    const FingerBase* const base = base_of(run.finger);
+    if (base == nullptr || base->id != run.baseline) continue;
+    const auto [at, is_new] = place.try_emplace({run.run, run.finger}, kept.size());
+    if (is_new)
+      kept.push_back(run);
+    else
+      kept[at->second] = run;
+  }
+  return kept;
+}
+
+RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
+                     const std::vector<ScoredRun>& known, const OnRecording& on_recording) {
+  std::set<std::pair<std::string, std::string>> stale;
+  std::set<std::string> done;
+  for (const ScoredRun& run : known) {
+    if (base_of(run.finger) == nullptr)
+      done.insert(run.run);
+    else
+      stale.emplace(run.run, run.finger);
+  }
+  for (const ScoredRun& run : current(known, base_of)) {
+    stale.erase({run.run, run.finger});
+    done.insert(run.run);
+  }
+  for (const auto& [run, finger] : stale) done.erase(run);
+  std::vector<std::string> unread;
+  for (const std::string& path : paths) {
+    if (!done.contains(name_of(path))) unread.push_back(path);
+  }
+  RunScores scores;
+  for (std::size_t i = 0; i < unread.size(); ++i) {
+    end_if_cancelled();
+    if (on_recording) on_recording(i + 1, unread.size());
+    score_one(unread[i], base_of, scores);
+  }
+  return scores;
 }
 
 }  // namespace softgrip::sysid::health

@@ -7,9 +7,9 @@
 
 #include "base/files.h"
 #include "base/sha256.h"
-#include "sysid/import/array_table.h"
 #include "sysid/import/mcap_table.h"
 #include "sysid/import/moments.h"
+#include "sysid/import/table.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::sysid {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "sysid/import/array_table.h"
+#include "sysid/import/table.h"
 
 namespace softgrip::sysid {
 namespace {

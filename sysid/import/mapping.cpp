@@ -3,14 +3,111 @@
 #include <cmath>
 #include <utility>
 
+#include "base/files.h"
 #include "base/numbers.h"
 #include "base/text.h"
+#include "document/node.h"
+#include "document/reader.h"
 
 namespace softgrip::sysid {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, char>, 5> separator_words{
     {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"space", ' '}, {"bar", '|'}}};
+
+constexpr double longest_s = 1e9;
+constexpr std::size_t most_mapping_bytes = std::size_t{64} * 1024;
+
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (c == '\t') {
+      out += "\\t";
+    } else if (static_cast<unsigned char>(c) >= 0x20) {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+  return "[" + with_commas(words, in_quotes) + "]";
+}
+
+std::string column_yaml(const ColumnMapping& column) {
+  std::string text = "{columns: " + list_of(column.columns);
+  if (!column.unit.empty()) text += ", unit: " + in_quotes(column.unit);
+  if (column.scale) text += ", scale: " + shortest(*column.scale);
+  if (column.zero) text += ", zero: " + shortest(*column.zero);
+  if (column.zero_first) text += ", zero: first";
+  return text + "}";
+}
+
+/// Returns `text` as a YAML comment on one line; line breaks are replaced.
+std::string comment(std::string_view text) {
+  return "# " + document::shown(text, 400) + "\n";
+}
+
+class MappingReader {
+ public:
+  MappingReader(const document::Document& document, document::Problems& problems)
+      : document_(document), problems_(problems) {}
+
+  Mapping read() {
+    document::MapReader map(document_, document_.root, problems_, "the mapping");
+    Mapping mapping;
+    (void)map.integer("schema", {1, 1});
+    for (const RoleSpec& spec : roles) {
+      if (const document::Node* node = map.child(spec.word, false)) column(*node, spec, mapping[spec.role]);
+    }
+    mapping.skip_bad_lines = map.optional_boolean("skip_bad_lines").value_or(false);
+    mapping.rate_hz = map.optional_number("rate_hz", {1e-3, 1e7});
+    mapping.from_s = map.optional_number("from_s", {0, longest_s}).value_or(0);
+    mapping.to_s = map.optional_number("to_s", {0, longest_s}).value_or(mapping.to_s);
+    mapping.channel = map.optional_text("channel").value_or("");
+    mapping.sheet = map.optional_text("sheet").value_or("");
+    if (const auto word = map.optional_text("separator")) {
+      mapping.separator = separator_named(*word);
+      if (mapping.separator == 0)
+        map.report("separator", document::in_backticks(*word) + " separates no columns",
+                   "write comma, semicolon, tab, space or bar");
+    }
+    for (const document::Node* item : map.sequence("missing", false)) mapping.missing.push_back(item->scalar);
+    map.finish();
+    if (problems_.empty() && !mapping.complete())
+      problems_.add(document_.problem({1, 1}, "the mapping is incomplete",
+                                      "required: time (or rate_hz), displacement, and command or pressure"));
+    return mapping;
+  }
+
+ private:
+  void column(const document::Node& node, const RoleSpec& spec, ColumnMapping& column) {
+    document::MapReader map(document_, node, problems_, std::string(spec.word));
+    for (const document::Node* item : map.sequence("columns", true)) {
+      if (item->kind == document::Node::Kind::scalar && !item->scalar.empty()) {
+        column.columns.push_back(item->scalar);
+      } else {
+        problems_.add(
+            document_.problem(item->at, "give the name of the column, or its number counted from 1"));
+      }
+    }
+    if (map.good("columns") && column.columns.empty()) map.report("columns", "the list of columns is empty");
+    column.unit = map.optional_text("unit").value_or("");
+    column.scale = map.optional_number("scale", {-1e12, 1e12});
+    if (map.good("scale") && column.scale == 0.0) map.report("scale", "a scale must not be 0");
+    const document::Node* zero = map.child("zero", false);
+    if (zero != nullptr && zero->scalar == "first") {
+      column.zero_first = true;
+    } else if (zero != nullptr) {
+      column.zero = document::number_in(document_, *zero, {-1e18, 1e18}, problems_, "zero");
+    }
+    map.finish();
+  }
+
+  const document::Document& document_;
+  document::Problems& problems_;
+};
 
 }  // namespace
 
@@ -60,6 +157,48 @@ std::string_view word_of_separator(char separator) {
     if (separator == character) return name;
   }
   return {};
+}
+
+std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, const std::string& software,
+                         const std::vector<std::string>& remarks) {
+  std::string text =
+      "# Columns and units of an import. To repeat the import: softgrip import FILE --map THIS --out LOG\n";
+  text += comment("file: " + source.file + " (" + source.format + ")");
+  text += comment("sha256: " + source.sha256);
+  text += comment("by " + software);
+  for (const std::string& remark : remarks) text += comment(remark);
+  text += "schema: 1\n";
+  for (const RoleSpec& spec : roles) {
+    if (mapping[spec.role].given())
+      text += std::string(spec.word) + ": " + column_yaml(mapping[spec.role]) + "\n";
+  }
+  if (mapping.rate_hz) text += "rate_hz: " + shortest(*mapping.rate_hz) + "\n";
+  if (mapping.separator != 0)
+    text += "separator: " + std::string(word_of_separator(mapping.separator)) + "\n";
+  if (!mapping.missing.empty()) text += "missing: " + list_of(mapping.missing) + "\n";
+  if (!mapping.channel.empty()) text += "channel: " + in_quotes(mapping.channel) + "\n";
+  if (!mapping.sheet.empty()) text += "sheet: " + in_quotes(mapping.sheet) + "\n";
+  if (mapping.skip_bad_lines) text += "skip_bad_lines: true\n";
+  if (mapping.from_s > 0) text += "from_s: " + shortest(mapping.from_s) + "\n";
+  if (std::isfinite(mapping.to_s)) text += "to_s: " + shortest(mapping.to_s) + "\n";
+  return text;
+}
+
+std::optional<Mapping> parse_mapping(const std::string& file, const std::string& text,
+                                     document::Problems& problems) {
+  const std::size_t before = problems.size();
+  const document::Document document = document::parse(file, text, problems);
+  if (problems.size() != before) return std::nullopt;
+  Mapping mapping = MappingReader(document, problems).read();
+  if (problems.size() != before) return std::nullopt;
+  return mapping;
+}
+
+std::optional<Mapping> read_mapping(const std::string& path, document::Problems& problems) {
+  const auto text = read_file(path, most_mapping_bytes);
+  if (text) return parse_mapping(path, *text, problems);
+  problems.add({path, {1, 1}, {}, text.error(), {}});
+  return std::nullopt;
 }
 
 }  // namespace softgrip::sysid

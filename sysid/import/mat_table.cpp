@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sysid/import/array_table.h"
+#include "sysid/import/table.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -12,7 +12,6 @@
 #include "base/text.h"
 #include "sysid/import/byte_scanner.h"
 #include "sysid/import/cell_value.h"
-#include "sysid/import/mcap_topics.h"
 #include "sysid/import/moments.h"
 
 namespace softgrip::sysid {

@@ -1,4 +1,4 @@
-#include "sysid/import/mcap_topics.h"
+#include "sysid/import/mcap_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sysid/import/array_table.h"
 #include "sysid/import/byte_scanner.h"
+#include "sysid/import/table.h"
 #include "sysid/import/tdms_value.h"
 
 namespace softgrip::sysid {

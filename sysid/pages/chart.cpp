@@ -11,7 +11,6 @@
 
 #include "base/numbers.h"
 #include "sysid/pages/canvas.h"
-#include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"
 
 namespace softgrip::sysid {

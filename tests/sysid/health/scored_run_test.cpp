@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "base/files.h"
-#include "sysid/health/run_search.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::health::scored_run_test {

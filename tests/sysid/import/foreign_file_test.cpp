@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "base/files.h"
-#include "sysid/import/array_table.h"
+#include "sysid/import/table.h"
 
 // tests/system/test_import.py tests the values that the import reads from MATLAB and HDF5 files.
 namespace softgrip::sysid::foreign_file_test {

@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include "sysid/pages/canvas.h"
-#include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"
 #include "sysid/pages/figure.h"
 

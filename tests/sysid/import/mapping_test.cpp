@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid::mapping_file_test {
+namespace softgrip::sysid::mapping_test {
 namespace {
 
 Mapping full() {
@@ -59,4 +59,4 @@ TEST(Mapping, SeparatorsHaveNames) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::mapping_file_test
+}  // namespace softgrip::sysid::mapping_test
