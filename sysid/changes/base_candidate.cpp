@@ -10,10 +10,8 @@
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
-#include "sysid/structure/linear_modes.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_fit.h"
-#include "sysid/structure/structure_model.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,8 +1,11 @@
 #pragma once
 // A 95 % confidence interval, and its conversion to text.
 
+#include <cmath>
 #include <string>
 #include <string_view>
+
+#include "base/numbers.h"
 
 namespace softgrip::sysid {
 
@@ -11,11 +14,18 @@ struct Interval {
   double upper = 0;
 };
 
-/// Returns the interval as text, for example "0.127 .. 0.133" if `between` is " .. ". If is_determined() is
-/// false, the text states that the logs do not determine the value.
-[[nodiscard]] std::string text_of(const Interval& interval, double value, std::string_view between);
 /// Returns true if the logs determine the value: the interval is at most 20 times as wide as the magnitude of
 /// the value.
-[[nodiscard]] bool is_determined(const Interval& interval, double value);
+[[nodiscard]] inline bool is_determined(const Interval& interval, double value) {
+  constexpr double loose = 20;
+  return interval.upper - interval.lower <= loose * std::abs(value);
+}
+
+/// Returns the interval as text, for example "0.127 .. 0.133" if `between` is " .. ". If is_determined() is
+/// false, the text states that the logs do not determine the value.
+[[nodiscard]] inline std::string text_of(const Interval& interval, double value, std::string_view between) {
+  if (!is_determined(interval, value)) return "not determined by these logs";
+  return significant(interval.lower, 4) + std::string(between) + significant(interval.upper, 4);
+}
 
 }  // namespace softgrip::sysid

@@ -1,4 +1,4 @@
-#include "sysid/fitting/separable_pressure.h"
+#include "sysid/fitting/separable.h"
 
 #include <algorithm>
 #include <cmath>

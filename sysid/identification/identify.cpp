@@ -16,11 +16,10 @@
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/fitting/minimise.h"
-#include "sysid/fitting/search.h"
+#include "sysid/fitting/multistart.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
-#include "sysid/identification/start_points.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/division.h"
 

@@ -10,8 +10,8 @@
 
 #include "model/model.h"
 #include "sysid/fitting/interval.h"
+#include "sysid/fitting/multistart.h"
 #include "sysid/fitting/score.h"
-#include "sysid/fitting/search.h"
 #include "sysid/identification/uncertainty.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
@@ -132,11 +132,6 @@ struct Identification {
   /// Results of the choice of the structure; set if the structure was chosen during the identification.
   std::optional<StructureEvidence> structure;
 };
-
-/// Returns the default structure: a Bouc-Wen block, and a Kelvin-Voigt block with `branches` branches. Its
-/// parameter values are scaled to the data.
-[[nodiscard]] model::Model base_model(const std::vector<Log>& logs, std::size_t branches);
-[[nodiscard]] model::Model base_model(const std::vector<Record>& records, std::size_t branches);
 
 /// Fits the model `start` to the logs. Returns an error sentence in these cases: there is no log, a log lacks
 /// the measured pressure that options.record.drive requires, the model is invalid, a parameter named in the

@@ -1,18 +1,43 @@
 #include "sysid/instrument/identified_logs.h"
 
+#include <algorithm>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "base/numbers.h"
 #include "base/text.h"
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/fitting/score.h"
-#include "sysid/identification/excitation_limits.h"
+#include "sysid/logs/excitation.h"
 #include "sysid/logs/plausibility_warnings.h"
 #include "sysid/pages/page.h"
 #include "sysid/structure/identify_structure.h"
 
 namespace softgrip::sysid {
 namespace {
+
+/// Returns prefixes of parameter names. A fit can determine the parameters with these prefixes only if the
+/// logs contain the motion `excitation`.
+std::span<const std::string_view> that_need(Excitation excitation) {
+  static constexpr std::string_view hysteresis[]{
+      "bouc_wen.beta",       "bouc_wen.gamma",    "bouc_wen.eta",        "asymmetric_bouc_wen.",
+      "prandtl_ishlinskii.", "duhem_hysteresis.", "crescent_hysteresis."};
+  static constexpr std::string_view creep[]{"kelvin_voigt.k", "kelvin_voigt.c", "slow_creep.",
+                                            "pressure_dependent_creep."};
+  static constexpr std::string_view shape[]{"bouc_wen.gamma",       "bouc_wen.eta",
+                                            "asymmetric_bouc_wen.", "prandtl_ishlinskii.",
+                                            "duhem_hysteresis.",    "crescent_hysteresis."};
+  switch (excitation) {
+    case Excitation::unloading:
+      return hysteresis;
+    case Excitation::rest:
+      return creep;
+    case Excitation::amplitudes:
+      return shape;
+  }
+  return {};
+}
 
 void append(std::vector<std::string>& list, std::vector<std::string> more) {
   for (std::string& one : more) list.push_back(std::move(one));
@@ -44,6 +69,23 @@ std::vector<std::string> warnings_of_data(const Identification& result, const st
 }
 
 }  // namespace
+
+std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
+                                           const std::vector<Estimate>& parameters) {
+  std::vector<std::string> sentences;
+  for (const Excitation missing : missing_excitation(logs)) {
+    std::string names;
+    for (const Estimate& estimate : parameters) {
+      const auto begins = [&](std::string_view name) { return estimate.name.starts_with(name); };
+      if (estimate.free && std::ranges::any_of(that_need(missing), begins))
+        names += (names.empty() ? "" : ", ") + estimate.name;
+    }
+    sentences.push_back(
+        without(missing) +
+        (names.empty() ? "" : "; the following parameters require the missing excitation: " + names));
+  }
+  return sentences;
+}
 
 IdentifyReport IdentifiedLogs::report(std::vector<std::string> call) const {
   return {result,

@@ -20,6 +20,11 @@
 
 namespace softgrip::sysid {
 
+/// Returns one sentence for each type of motion that no log contains. The sentence names the fitted
+/// parameters that cannot be determined without this type of motion.
+[[nodiscard]] std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
+                                                         const std::vector<Estimate>& parameters);
+
 /// Input data and options of an identification.
 struct IdentifyQuestion {
   std::vector<Log> logs;        ///< logs to which the model is fitted; at least one

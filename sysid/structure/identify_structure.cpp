@@ -15,7 +15,7 @@
 #include "sysid/logs/division.h"
 #include "sysid/logs/resampled_record.h"
 #include "sysid/structure/published_element.h"
-#include "sysid/structure/structure_model.h"
+#include "sysid/structure/structure_fit.h"
 #include "sysid/structure/valve_stage.h"
 
 namespace softgrip::sysid {

@@ -1,4 +1,4 @@
-#include "sysid/structure/linear_modes.h"
+#include "sysid/structure/structure_fit.h"
 
 #include <algorithm>
 #include <array>

@@ -9,11 +9,10 @@
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
 #include "sysid/fitting/minimise.h"
+#include "sysid/fitting/multistart.h"
 #include "sysid/fitting/residuals.h"
-#include "sysid/fitting/search.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/identify.h"
-#include "sysid/identification/start_points.h"
 
 namespace softgrip::sysid {
 

@@ -7,12 +7,17 @@
 // hysteresis consists of play operators, sum_i w_i play_(r_i)(q) (Prandtl-Ishlinskii; Kuhnen, European
 // Journal of Control 9, 2003), or is the Bouc-Wen element with exponent 1. g is the block `characteristic`.
 // The weights are not negative, so that each fitted model is monotonic in the current pressure and has an
-// inverse. Linear modes are the exception: they add weights of either sign to z (model::LinearModes).
+// inverse. Linear modes are the exception: they add weights of either sign to z (model::LinearModes). An
+// ablation removes each component of a structure once. The parameters of the operators that are fixed before
+// a fit are chosen for the records.
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
 
@@ -105,5 +110,81 @@ struct NonlinearNumbers {
 
   bool operator==(const NonlinearNumbers&) const = default;
 };
+
+/// Parameters of the operators that are fixed before a fit: thresholds, time constants, and threshold
+/// pressures of creep (hinges).
+struct StructureGrid {
+  double time_unit_s = 1;  ///< result of time_unit_s() for the records
+  double largest_kpa = 0;  ///< largest magnitude of the drive
+  double span_mm = 0;      ///< largest magnitude of the readings
+  /// Thresholds of the play operators in increasing order. The elastic operator (threshold 0) is not in the
+  /// list.
+  std::vector<double> thresholds_kpa;
+  std::vector<double> ladder_s;  ///< time constants of the creep branches, in increasing order
+  /// Smallest time constant that counts as slow creep.
+  double slow_from_s = 0;
+  std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, in increasing order
+  std::vector<double> hinge_ladder_s;  ///< time constants of the creep branches above each threshold pressure
+                                       ///< (hinge)
+  double shortest_period_s = 0;        ///< shortest period of a linear mode
+};
+
+/// Returns the thresholds, time constants and hinges that are used for these records. If the records contain
+/// at most two cycles, the number of play operators is smaller.
+[[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
+
+/// Returns the smallest instantaneous elastic gain of a structure that has an inverse [mm/kPa].
+[[nodiscard]] double least_elastic_mm_per_kpa(const StructureGrid& grid);
+/// Returns the longest period of a linear mode in a fit [s].
+[[nodiscard]] double longest_mode_s(const StructureGrid& grid);
+
+/// Components of a structure. An ablation removes each component once, to measure the error reduction by this
+/// component.
+enum class Ingredient {
+  hysteresis,
+  play_operators,  ///< play operators; after their removal, the structure has the Bouc-Wen element
+  creep,
+  slow_creep,
+  pressure_dependent_creep,
+  delay,
+  lag,
+  second_lag,
+  rate_limit,
+  latency,      ///< delay, lags and rate limit together, because delay and lag can largely replace each other
+  regulator,    ///< regulator; after its removal, the structure has a lag
+  venting_lag,  ///< separate time constant for venting; after its removal, the lag has one time constant
+  /// Characteristic and envelopes together, because each of them can largely replace the other.
+  characteristic,
+  resonance,
+  linear_modes,
+  envelopes  ///< nonlinear envelopes of the play operators; after their removal, the operators are ordinary
+             ///< ones
+};
+inline constexpr std::array all_ingredients{Ingredient::hysteresis,
+                                            Ingredient::play_operators,
+                                            Ingredient::creep,
+                                            Ingredient::slow_creep,
+                                            Ingredient::pressure_dependent_creep,
+                                            Ingredient::delay,
+                                            Ingredient::lag,
+                                            Ingredient::second_lag,
+                                            Ingredient::rate_limit,
+                                            Ingredient::latency,
+                                            Ingredient::regulator,
+                                            Ingredient::venting_lag,
+                                            Ingredient::characteristic,
+                                            Ingredient::resonance,
+                                            Ingredient::linear_modes,
+                                            Ingredient::envelopes};
+[[nodiscard]] std::string_view name_of(Ingredient ingredient);
+
+/// Returns a copy of the structure without this component. If the structure does not contain the component,
+/// returns the structure unchanged.
+[[nodiscard]] BaseStructure without(BaseStructure s, Ingredient ingredient);
+
+/// Returns true if the structure contains the component. For Ingredient::latency, returns true only if the
+/// structure has both a delay and a lag. With only one of them, `latency` would repeat the entry for this
+/// component.
+[[nodiscard]] bool has(const BaseStructure& s, Ingredient ingredient);
 
 }  // namespace softgrip::sysid

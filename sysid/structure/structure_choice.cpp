@@ -13,12 +13,10 @@
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/identify.h"
 #include "sysid/limits/limits.h"
-#include "sysid/structure/bounded_answer.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/resonance.h"
 #include "sysid/structure/structure_fit.h"
 #include "sysid/structure/structure_judge.h"
-#include "sysid/structure/structure_model.h"
 
 namespace softgrip::sysid {
 namespace {

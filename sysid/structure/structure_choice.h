@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "sysid/fitting/fit_space.h"
-#include "sysid/structure/ingredient.h"
 #include "sysid/structure/structure.h"
 
 namespace softgrip::sysid {

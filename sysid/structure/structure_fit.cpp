@@ -12,7 +12,6 @@
 #include "model/envelope_map.h"
 #include "sysid/fitting/descent.h"
 #include "sysid/logs/resampled_record.h"
-#include "sysid/structure/linear_modes.h"
 #include "sysid/structure/structure_columns.h"
 #include "sysid/structure/structure_projection.h"
 

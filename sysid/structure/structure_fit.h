@@ -1,15 +1,16 @@
 #pragma once
 // Fits a structure to records by variable projection. The search changes only the nonlinear parameters. For
-// each set of nonlinear parameters, the optimal weights are computed.
+// each set of nonlinear parameters, the optimal weights are computed. The fitted structure is converted into
+// a model that consists of blocks. The daemon and all predictions use models of this type.
 
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "model/model.h"
+#include "sysid/fitting/fit_space.h"
 #include "sysid/logs/record.h"
 #include "sysid/structure/structure.h"
-#include "sysid/structure/structure_grid.h"
 
 namespace softgrip::sysid {
 
@@ -47,5 +48,26 @@ struct FittedStructure {
 /// per record, and the fitted drift is subtracted.
 [[nodiscard]] std::vector<Record> without_zero_drift(std::vector<Record> records, BaseStructure structure,
                                                      const StructureFitOptions& options);
+
+/// Returns the model and the estimated start states of the records. Operators with weight 0 are omitted.
+/// Exception: a creep branch stays in the model if the unsettled creep of a record needs its time constant.
+/// @param drive  input of the model. With Drive::measured, the lag belongs to the finger and comes after the
+/// pressure sensor.
+[[nodiscard]] FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive);
+
+/// Start point of a structure with one more linear mode.
+struct StartOfMode {
+  double mean_square_mm2 = 0;  ///< mean square error at the start point
+  NonlinearNumbers numbers;
+};
+
+/// Returns start points of a structure for its next linear mode, the best first. Each has one mode more than
+/// `numbers`. The function scans periods, damping ratios and dead times. For each of them, linear least
+/// squares gives the weights of all columns.
+/// @param structure  structure with more modes than `numbers`.
+[[nodiscard]] std::vector<StartOfMode> starts_of_next_mode(const std::vector<Record>& records,
+                                                           BaseStructure structure, const StructureGrid& grid,
+                                                           const NonlinearNumbers& numbers,
+                                                           const StructureFitOptions& options);
 
 }  // namespace softgrip::sysid

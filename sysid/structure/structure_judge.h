@@ -1,17 +1,26 @@
 #pragma once
 // Fits single structures to records and evaluates them on held-out readings. choose_structure() and
-// ablation_of() use the class StructureJudge.
+// ablation_of() use the class StructureJudge. A further test evaluates the predictions beyond the data. In a
+// fit to a single stroke, large terms of the model may cancel each other. During a second stroke, the same
+// terms may no longer cancel.
 
 #include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/held_out.h"
+#include "sysid/logs/record.h"
 #include "sysid/structure/resonance.h"
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_fit.h"
 
 namespace softgrip::sysid {
+
+/// Simulates the drive of each record twice in succession. Returns true if the response to each record stays
+/// within the range of its readings, extended on both sides by the width of this range. Only creep and
+/// training can make the second stroke differ from the first one, and both effects are smaller than a stroke.
+[[nodiscard]] bool stays_bounded(const FitPoint& point, const std::vector<Record>& records);
 
 /// Value `yes`: between any two neighbouring time constants, the chain of creep branches has one additional
 /// time constant.

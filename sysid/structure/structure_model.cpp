@@ -1,4 +1,4 @@
-#include "sysid/structure/structure_model.h"
+#include "sysid/structure/structure_fit.h"
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/diagnosis/evidence/evidence.h"
+#include "sysid/fitting/multistart.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
-#include "sysid/identification/start_points.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,4 +1,4 @@
-#include "sysid/structure/ingredient.h"
+#include "sysid/structure/structure.h"
 
 #include <gtest/gtest.h>
 

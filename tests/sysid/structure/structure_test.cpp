@@ -25,7 +25,6 @@
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_columns.h"
 #include "sysid/structure/structure_fit.h"
-#include "sysid/structure/structure_model.h"
 #include "sysid/structure/structure_projection.h"
 #include "sysid/structure/valve_stage.h"
 #include "tests/sysid/root_mean_square.h"

@@ -1,4 +1,4 @@
-#include "sysid/structure/bounded_answer.h"
+#include "sysid/structure/structure_judge.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 
-namespace softgrip::sysid::bounded_answer_test {
+namespace softgrip::sysid::structure_judge_test {
 namespace {
 
 /// Returns a record of one pressure cycle from 0 to 60 kPa and back to 0. The readings are computed with
@@ -60,4 +60,4 @@ TEST(StaysBounded, IsFalseIfOneRecordIsExceeded) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::bounded_answer_test
+}  // namespace softgrip::sysid::structure_judge_test

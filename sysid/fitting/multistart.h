@@ -1,13 +1,16 @@
 #pragma once
-// Searches for the parameters of a model from many start points.
+// Draws start points for a fit, and searches for the parameters of a model from all of them.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "model/model.h"
 #include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/separable_search.h"
+#include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
@@ -36,5 +39,25 @@ using ShowProgress = std::function<void(const Progress&)>;
 /// Sorts the creep branches of a point by their time constants. The order (rising or falling) is that of the
 /// time constants in `like_s`.
 void order_branches(const std::vector<double>& like_s, FitPoint& point);
+
+/// Scale of the data of all records.
+struct CampaignSize {
+  double largest_kpa = 0;  ///< largest magnitude of the input pressure in all records
+  double span_mm = 0;      ///< largest span of the readings in a record
+  double longest_s = 0;    ///< duration of the longest record
+};
+[[nodiscard]] CampaignSize campaign_size(const std::vector<Record>& records);
+
+/// Returns `count` start points. The first one is the given model. The others are random points, alternately
+/// at the scale of the data (pressure, span, length) and around the given model. Parameters that are not free
+/// in `space` keep their values.
+[[nodiscard]] std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
+                                                const std::vector<Record>& records, std::size_t count,
+                                                std::uint64_t seed);
+
+/// Returns the default structure: a Bouc-Wen block, and a Kelvin-Voigt block with `branches` branches. Its
+/// parameter values are scaled to the data.
+[[nodiscard]] model::Model base_model(const std::vector<Log>& logs, std::size_t branches);
+[[nodiscard]] model::Model base_model(const std::vector<Record>& records, std::size_t branches);
 
 }  // namespace softgrip::sysid

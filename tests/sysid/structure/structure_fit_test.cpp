@@ -1,4 +1,4 @@
-#include "sysid/structure/linear_modes.h"
+#include "sysid/structure/structure_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,9 @@
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_judge.h"
-#include "sysid/structure/structure_model.h"
 #include "tests/sysid/root_mean_square.h"
 
-namespace softgrip::sysid::linear_modes_test {
+namespace softgrip::sysid::structure_fit_test {
 namespace {
 
 using test::rms;
@@ -174,4 +173,4 @@ TEST(LinearModes, ColumnsReproduceTheModelResponse) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::linear_modes_test
+}  // namespace softgrip::sysid::structure_fit_test
