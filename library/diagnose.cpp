@@ -9,8 +9,7 @@
 #include "library/log_parts.h"
 #include "library/model_parts.h"
 #include "sysid/changes/change.h"
-#include "sysid/changes/change_page.h"
-#include "sysid/changes/change_result.h"
+#include "sysid/changes/change_report.h"
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 

@@ -12,8 +12,8 @@
 #include "sysid/changes/base_candidate.h"
 #include "sysid/changes/base_prediction.h"
 #include "sysid/changes/filter_fit.h"
-#include "sysid/changes/regulator_fit.h"
-#include "sysid/evidence/tolerance.h"
+#include "sysid/changes/regulator.h"
+#include "sysid/evidence/comparison.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"
@@ -197,6 +197,11 @@ void spread(Base& base) {
                count > 0 ? std::sqrt(std::max(0.0, zeros_squared - zeros * zeros / count) / free) : 0);
 }
 
+double rms(const std::vector<double>& squares, const std::vector<double>& rows) {
+  const double count = std::accumulate(rows.begin(), rows.end(), 0.0);
+  return count > 0 ? std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / count) : 0;
+}
+
 }  // namespace
 
 double finger_bin_s(const std::vector<Record>& records) {
@@ -264,6 +269,20 @@ std::vector<Record> pressure_records(const std::vector<Log>& logs, bool held) {
   std::vector<Log> swapped = logs;
   for (Log& log : swapped) log.displacement_mm = log.pressure_kpa;
   return make_records(swapped, {.drive = Drive::command, .held = held});
+}
+
+DriveChoice chosen_drive(const std::vector<Record>& by_pressure, const std::vector<Record>& by_command,
+                         std::uint64_t seed, unsigned threads) {
+  const double bin_s = finger_bin_s(by_pressure);
+  const Units units(by_pressure);
+  const PairedLosses losses =
+      losses_of(left_out_by_play(by_pressure, Drive::measured, bin_s, threads),
+                left_out_by_play(by_command, Drive::command, bin_s, threads), units, bin_s);
+  DriveChoice choice{Drive::measured, rms(losses.worse, losses.rows), rms(losses.better, losses.rows)};
+  const bool beyond_spread =
+      square(choice.by_pressure_mm) > run_to_run_factor(units.runs()) * square(choice.by_command_mm);
+  if (beyond_spread && is_better(compare(losses, 0, seed))) choice.drive = Drive::command;
+  return choice;
 }
 
 }  // namespace softgrip::sysid

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "sysid/changes/base_prediction.h"
-#include "sysid/changes/regulator_fit.h"
+#include "sysid/changes/regulator.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"

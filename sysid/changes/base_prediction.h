@@ -1,6 +1,7 @@
 #pragma once
 // Predicts the readings of a record from the baseline model of a finger, with or without the effects of a
-// change.
+// change. If the blocks of an effect follow all blocks of the baseline model, their output depends only on
+// the sampled output of the baseline model. The baseline model is then not simulated again.
 
 #include <optional>
 #include <vector>
@@ -15,6 +16,19 @@
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
+
+/// Returns true if two conditions hold. All `blocks` come after the blocks of `base` in the signal path. The
+/// output of `blocks` at a sample depends only on the output of `base` at the samples. Returns false if the
+/// command is held or if the initial state is unknown.
+[[nodiscard]] bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Model& base,
+                                 const Record& record);
+
+/// Returns the result of predict() for the baseline model followed by the blocks. The baseline model is not
+/// simulated.
+/// @param blocks  blocks for which is_downstream() is true.
+/// @param base_mm  prediction of the baseline model for the record.
+[[nodiscard]] std::vector<double> downstream(const std::vector<model::BlockSpec>& blocks,
+                                             const Record& record, std::vector<double> base_mm);
 
 /// Returns the prediction of a baseline that has no finger model: the output of the regulator, or 0 if there
 /// is no regulator.

@@ -17,7 +17,6 @@
 #include "sysid/changes/change_size.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/healthy_runs.h"
-#include "sysid/changes/unfamiliar_input.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/evidence/veto.h"

@@ -9,7 +9,6 @@
 
 #include "sysid/changes/effect_fit.h"
 #include "sysid/evidence/comparison.h"
-#include "sysid/evidence/tolerance.h"
 
 namespace softgrip::sysid {
 

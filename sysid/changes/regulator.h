@@ -1,6 +1,7 @@
 #pragma once
-// Simulates the pressure regulator between command and finger. The simulation is used if the pressure is not
-// recorded. The regulator consists of a controller, ports and a tube.
+// Simulates the pressure regulator between command and finger, and estimates its parameters from records. The
+// simulation is used if the pressure is not recorded. The regulator consists of a controller, ports and a
+// tube.
 
 #include <vector>
 
@@ -40,5 +41,18 @@ struct Regulator {
 
 /// Returns the record with the pressure at the output of the regulator as its drive.
 [[nodiscard]] Record behind(const Regulator& regulator, const Record& record);
+
+/// Quantity that was recorded behind a regulator.
+enum class ReadBy {
+  gauge,  ///< the pressure; gain and zero offset of its sensor are fitted
+  /// The displacement. It is described by a bank of plays and lags, whose weights are fitted for each
+  /// regulator.
+  finger,
+};
+
+/// Returns the regulator with the smallest sum of squared residuals.
+/// @param records  records whose drive is the command.
+[[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa,
+                                      ReadBy read_by = ReadBy::finger);
 
 }  // namespace softgrip::sysid

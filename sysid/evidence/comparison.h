@@ -1,9 +1,13 @@
 #pragma once
-// Compares two hypotheses by their losses on the same data. The search for changes and the conditions under
-// which a cause may be named use this comparison. The bootstrap of sysid/fitting/paired_losses.h draws blocks
+// Compares two hypotheses by their losses on the same data, and computes the tolerance of a search for
+// changes from the error reductions that the search finds in data without a change. A cause is reported only
+// if its error reduction exceeds the tolerance. The bootstrap of sysid/fitting/held_out.h draws blocks
 // instead.
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace softgrip::sysid {
@@ -30,5 +34,39 @@ struct Comparison {
 /// Returns true if `better` wins in at least 95 % of the bootstrap samples (limits::probability). It wins in
 /// a sample if its loss is smaller by more than the tolerance of compare().
 [[nodiscard]] bool is_better(const Comparison& comparison);
+
+/// Error reduction per row (residual) by each cause, in a healthy run that was left out of the fit. The key
+/// is the id of the cause.
+using NullGains = std::map<std::string, double, std::less<>>;
+
+/// Returns the 95 % quantile of an error ratio. The numerator is the squared error on a further run. The
+/// denominator is the mean squared error on n runs, each of which is predicted by a fit to the other n - 1
+/// runs. Both errors are differences from a mean. The mean has n runs in the numerator and n - 1 runs in the
+/// denominator. Runs differ in d = limits::run_directions independent directions. The ratio is (1 - 1/n^2) F,
+/// where F has d and d (n - 1) degrees of freedom. The result is 9.3 for one run, 7.0 for two runs, 4.2 for
+/// three runs and 3.2 for six runs. If there is one run, its two halves replace the runs. The RMS error of a
+/// further run may then be three times as large as the error between the halves.
+[[nodiscard]] double run_to_run_factor(std::size_t runs);
+
+class Tolerance {
+ public:
+  Tolerance() = default;
+  /// @param units  error reductions in each cross-validation unit; at least one unit.
+  /// @param runs  number of runs that all units contain together.
+  /// @param more  amount by which an unfamiliar input increases the expected loss per row.
+  Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more = 0);
+
+  /// Returns the mean error reduction by a cause in data without a change. Negative reductions count as 0.
+  /// For a cause that the units do not contain, returns the mean over all causes.
+  [[nodiscard]] double usual(std::string_view cause) const;
+  /// Returns the error reduction per row above which a cause counts as a change. The threshold is
+  /// run_to_run_factor() times a sum. The sum consists of the increase `more` and the larger one of two
+  /// values: the mean reduction by this cause, and the mean reduction over all causes.
+  [[nodiscard]] double of(std::string_view cause) const;
+
+ private:
+  NullGains usual_;
+  double average_ = 0, factor_ = 1, more_ = 0;
+};
 
 }  // namespace softgrip::sysid

@@ -9,7 +9,6 @@
 #include <Eigen/QR>
 
 #include "base/statistics.h"
-#include "sysid/evidence/f_quantile.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

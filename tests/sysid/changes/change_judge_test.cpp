@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "sysid/changes/base_prediction.h"
-#include "sysid/changes/unfamiliar_input.h"
+#include "sysid/changes/healthy_runs.h"
 #include "tests/sysid/changes/pressure_base.h"
 
 namespace softgrip::sysid::change_judge_test {

@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "sysid/changes/change_page.h"
-#include "sysid/changes/change_result.h"
+#include "sysid/changes/change_report.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/changes/regulator.h"
 #include "sysid/logs/resampled_record.h"

@@ -1,10 +1,11 @@
 #pragma once
-// Converts the diagnosis of a change to the fields of diagnosis.json. diagnosis.json contains the keys of
-// every diagnosis and additional keys for a change. The report page and the command `softgrip diagnose` show
-// some of the fields in tables.
+// Writes the report of a change: its cause, its size, the next steps and the evidence. diagnosis.json
+// contains the keys of every diagnosis and additional keys for a change. The report page and the command
+// `softgrip diagnose` show some of the fields in tables.
 
 #include "base/result/result.h"
 #include "sysid/changes/change.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 
@@ -27,5 +28,11 @@ namespace softgrip::sysid {
 
 /// Returns the name of a run. If the run is healthy, " (healthy)" follows the name.
 [[nodiscard]] std::string name_with_state(const RunLeft& run);
+
+/// Returns the page.
+/// @param healthy, later  logs; the page lists their hashes.
+/// @param given  model in use.
+[[nodiscard]] Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
+                               const std::vector<Log>& later, const model::Model& given);
 
 }  // namespace softgrip::sysid
