@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "sysid/diagnosis/causes/indistinguishable.h"
+#include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/experiments/experiment_advice.h"
 #include "sysid/diagnosis/experiments/separation.h"
 #include "sysid/diagnosis/gauge/gauge_verdict.h"

@@ -8,7 +8,7 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
-#include "sysid/diagnosis/causes/indistinguishable.h"
+#include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/limits/limits.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/numbers.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_scale.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
-#include "sysid/diagnosis/causes/indistinguishable.h"
+#include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/evidence/evidence.h"
 
 namespace softgrip::sysid {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/numbers.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/identification/identify.h"
 
 namespace softgrip::sysid {

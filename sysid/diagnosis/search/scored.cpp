@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/statistics.h"
-#include "sysid/diagnosis/causes/indistinguishable.h"
+#include "sysid/diagnosis/causes/cause.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

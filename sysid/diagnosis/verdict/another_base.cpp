@@ -8,8 +8,8 @@
 #include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/residual/noise.h"
-#include "sysid/diagnosis/search/coherence.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/data_warnings.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

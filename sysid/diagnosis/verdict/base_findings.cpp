@@ -9,7 +9,7 @@
 #include "model/named.h"
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/linear_selection.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/fitting/held_out.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"

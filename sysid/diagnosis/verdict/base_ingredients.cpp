@@ -27,7 +27,7 @@
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/slack.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/limits/limits.h"
 #include "sysid/structure/published_element.h"
 

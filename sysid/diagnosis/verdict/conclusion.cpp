@@ -15,7 +15,7 @@
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/verdict/another_base.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

@@ -1,22 +1,38 @@
 #pragma once
 // Adds warnings to a diagnosis: about insufficient or implausible data, and about an unphysical refitted
 // model.
+// Tests if a model can explain the logs, and if one set of parameters fits all logs together.
 // Handles causes that a simulation of the logs cannot detect. Either no log contains the condition under
 // which the cause has an effect, or the logs were recorded in a closed loop.
 // Averages logs with far more samples than a diagnosis needs, because the computing time increases with the
 // number of readings. Within the response time of a finger, the mean of several readings contains as much
 // information as the readings.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/model.h"
 #include "sysid/diagnosis/causes/scales.h"
+#include "sysid/diagnosis/search/fit.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
+
+/// Returns a warning if the refitted model explains less than 20 % of the variance of the readings.
+[[nodiscard]] std::optional<std::string> why_not_about(const std::vector<Record>& records,
+                                                       const StructureFit& recalibrated);
+
+/// Returns a warning if the logs are inconsistent, for example because they come from two rigs or because the
+/// rig was changed between two logs. The structure is fitted to each log separately. The logs are
+/// inconsistent if the mean square error of these fits is below 10 % of `together_mm2`.
+/// @param together_mm2  mean square error of a common fit with all causes that were found. It includes the
+/// causes because a drift, for example, makes logs differ, but is explained by a cause.
+[[nodiscard]] std::optional<std::string> inconsistent_among(const std::vector<Record>& records,
+                                                            const StructureFit& recalibrated,
+                                                            double together_mm2);
 
 /// Adds a warning if the refitted model is unphysical.
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings);
@@ -34,7 +50,8 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
 /// - A drift of the sensor is visible only while the finger rests without pressure. If no log contains such a
 ///   rest, the drift is moved from `causes` to `partial` and listed in `not_tested`.
 /// - If every log was recorded in a closed loop, a warning is added.
-/// - If, in addition, the phase of each loop is that of a sticking valve (sysid/evidence/loop_phase.h),
+/// - If, in addition, the phase of each loop is that of a sticking valve
+/// (sysid/diagnosis/verdict/loop_phase.h),
 ///   valve_deadband is named. The causes of the search are then moved to `partial`.
 void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs);
 

@@ -24,7 +24,7 @@
 #include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/diagnosis/search/null_calibration.h"
 #include "sysid/diagnosis/search/selection.h"
-#include "sysid/diagnosis/search/stick_slip_selection.h"
+#include "sysid/diagnosis/search/stick_slip.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/diagnosis/verdict/reading_lead.h"
 #include "sysid/diagnosis/verdict/valve_findings.h"

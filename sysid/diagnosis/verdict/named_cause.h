@@ -1,13 +1,20 @@
 #pragma once
-// Describes a cause that is named in a verdict, with the evidence for the cause.
+// Describes a cause that is named in a verdict, with the evidence for the cause, its parameters and their
+// confidence intervals. The value of a parameter depends on the other causes in the structure. If the data do
+// not show if a confounded cause is present, the interval covers the values with and without the confounded
+// cause.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/identification/identify.h"
+#include "sysid/identification/uncertainty.h"
 
 namespace softgrip::sysid {
 
@@ -37,5 +44,52 @@ struct NamedCause {
   std::vector<Cause> alternatives;
   std::vector<CandidateScore> candidates;
 };
+
+/// A fitted point and the covariance of its fitted parameters.
+struct UncertainPoint {
+  const FitPoint& point;
+  const FitSpace& space;
+  std::vector<double> z;
+  Uncertainty uncertainty;
+};
+/// Computes the covariance of the parameters that were fitted at `point`.
+/// @param space  free parameters of the fit to `records`. `point` and `space` must outlive the result.
+[[nodiscard]] UncertainPoint uncertain_point(const std::vector<Record>& records, const FitPoint& point,
+                                             const FitSpace& space);
+
+/// Returns the parameters of the block with the type `block_type`. A parameter has a 95 % interval only if it
+/// was fitted and is not at a bound.
+[[nodiscard]] std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t block_type);
+
+/// Returns the causes of a selection. Their parameters have the values of the extended model.
+[[nodiscard]] std::vector<NamedCause> name_chosen(const std::vector<Record>& records,
+                                                  const StructureFit& extended,
+                                                  const std::vector<ChosenCause>& chosen);
+
+/// Returns the causes that were detected in the readings before any fit. These are outliers, and slow or
+/// frozen sampling.
+[[nodiscard]] std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers,
+                                                         const SamplingEvidence& sampling, double noise_mm,
+                                                         model::OutputUnit unit);
+
+/// Returns the title of a cause with a lower-case first letter, so that it can be used within a sentence:
+/// "valve lag".
+[[nodiscard]] std::string title_within(const Cause& cause);
+/// Returns the title of an alternative, for example "valve lag". If the same cause is already named, "a
+/// further" is added: "a further valve lag".
+[[nodiscard]] std::string alternative_title(const Cause& alternative, const std::vector<NamedCause>& named);
+
+/// Returns true if the list of named causes contains the cause.
+[[nodiscard]] bool is_among(const std::vector<NamedCause>& named, const Cause& cause);
+
+/// Returns true if at least one of the named causes has an alternative.
+[[nodiscard]] bool any_alternatives(const std::vector<NamedCause>& causes);
+
+/// Widens the intervals of `named`, which are the causes of `selection`. Each interval then also covers the
+/// values of the parameter in the undecided structures of the selection that the held-out losses do not rule
+/// out. Returns one sentence for each undecided structure that has widened an interval.
+[[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
+                                                     const std::vector<Record>& records,
+                                                     const Selection& selection, std::uint64_t seed);
 
 }  // namespace softgrip::sysid

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "model/catalogue.h"
-#include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/causes/registry.h"
 #include "tests/model/presets.h"
 #include "tests/sysid/diagnosis/campaign.h"

@@ -1,7 +1,7 @@
 // Tests two causes that no command can separate. A diagnosis must list both causes, even if the block of one
 // cause fits the data better.
 
-#include "sysid/diagnosis/causes/indistinguishable.h"
+#include "sysid/diagnosis/causes/cause.h"
 
 #include <algorithm>
 #include <numeric>

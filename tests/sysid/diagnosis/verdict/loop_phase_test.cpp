@@ -1,4 +1,4 @@
-#include "sysid/evidence/loop_phase.h"
+#include "sysid/diagnosis/verdict/loop_phase.h"
 
 #include <gtest/gtest.h>
 

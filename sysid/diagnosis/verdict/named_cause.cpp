@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 
 #include <algorithm>
 #include <cctype>

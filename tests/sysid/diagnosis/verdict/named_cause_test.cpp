@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid::naming_test {
+namespace softgrip::sysid::named_cause_test {
 namespace {
 
 using model::SignalName;
@@ -170,4 +170,4 @@ TEST(MixedIntervals, CoverTheTrueDelayIfALagIsUndecided) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::naming_test
+}  // namespace softgrip::sysid::named_cause_test
