@@ -2,13 +2,27 @@
 // Implements the functions of a Chain. Only files that instantiate Chain for a number type, or that construct
 // a single block, include this file. chain.cpp instantiates Chain<double>.
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "model/chain.h"
-#include "model/visit.h"
 
 namespace softgrip::model {
+
+/// Calls function(block) with the block that `any` contains. The function finds the type of the block by
+/// comparisons. It does not use std::visit. For more than eleven alternatives, std::visit uses a table of
+/// function pointers, which prevents inlining. With std::visit, a call of Chain::peek() with the derivative
+/// takes 33 ns in place of 14 ns.
+template <class Any, class Function>
+inline void visit_block(Any& any, Function&& function) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (void)((any.index() == I && (function(*std::get_if<I>(&any)), true)) || ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<std::remove_const_t<Any>>>{});
+}
+
 namespace walk {
 
 template <class T, std::size_t I = 0>

@@ -1,10 +1,17 @@
 #pragma once
 // Multiplies a signal by a gain that depends on the surroundings, for example on the temperature.
 
-#include "model/gain.h"
+#include "model/number.h"
 #include "model/segment.h"
 
 namespace softgrip::model {
+
+/// Returns 1 + x for x >= -1/2, and -1/(4 x) for smaller x. The result is positive and monotone in x, and its
+/// value and slope are continuous. The gain is linear in x as long as it is at least 1/2.
+template <class T>
+[[nodiscard]] T positive_gain(const T& x) {
+  return value_of(x) >= -0.5 ? T(1.0 + x) : T(-0.25 / x);
+}
 
 /// Multiplies segments by a gain that changes linearly over a sample. At the end of the sample, the gain has
 /// the value that corresponds to the surroundings at this time. If a sample has several segments, the

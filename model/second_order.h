@@ -7,8 +7,8 @@
 #include <cstddef>
 
 #include "model/number.h"
-#include "model/recent_durations.h"
 #include "model/segment.h"
+#include "model/weight_cache.h"
 
 namespace softgrip::model {
 

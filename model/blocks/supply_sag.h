@@ -2,7 +2,6 @@
 // Models a valve whose output pressure decreases when the supply pressure decreases.
 
 #include "model/block.h"
-#include "model/gain.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {

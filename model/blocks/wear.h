@@ -2,7 +2,6 @@
 // Models a gain of the actuator that drifts with use.
 
 #include "model/block.h"
-#include "model/gain.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {

@@ -1,11 +1,11 @@
-#include "model/recent_durations.h"
+#include "model/weight_cache.h"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <set>
 
-namespace softgrip::model::recent_durations_test {
+namespace softgrip::model::weight_cache_test {
 namespace {
 
 TEST(RecentDurations, AStoredDurationKeepsItsSlot) {
@@ -37,4 +37,4 @@ TEST(RecentDurations, FindStoresNothing) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::recent_durations_test
+}  // namespace softgrip::model::weight_cache_test
