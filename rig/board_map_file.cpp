@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 #include "document/reader.h"
-#include "drivers/modbus/modbus_request.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::rig {
 namespace {

@@ -237,6 +237,12 @@ class LibgpiodLines final : public GpioLines {
 
 }  // namespace
 
+std::string text_of(const GpioLineSettings& line) {
+  std::string text = line.chip + " line ";
+  text += line.line.empty() ? std::to_string(line.offset.value_or(0)) : "`" + line.line + "`";
+  return text + (line.active_low ? ", active low" : ", active high");
+}
+
 std::vector<ComputerDevice> chips_in(const std::filesystem::path& devices, const std::filesystem::path& sys) {
   int denied = 0;
   return look_at_chips(devices, sys, denied);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "drivers/modbus/modbus_request.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::drivers {
 namespace {

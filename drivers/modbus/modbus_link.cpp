@@ -15,7 +15,7 @@
 #include "base/descriptor.h"
 #include "base/text.h"
 #include "base/time.h"
-#include "drivers/modbus/modbus_reply.h"
+#include "drivers/modbus/modbus_message.h"
 #include "drivers/modbus/modbus_rtu_link.h"
 #include "drivers/modbus/modbus_tcp_link.h"
 

@@ -13,8 +13,7 @@
 #include "drivers/board/board.h"
 #include "drivers/board/round_trip.h"
 #include "drivers/modbus/modbus_address.h"
-#include "drivers/modbus/modbus_reply.h"
-#include "drivers/modbus/modbus_request.h"
+#include "drivers/modbus/modbus_message.h"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): the name in libmodbus
 

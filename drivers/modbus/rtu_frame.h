@@ -7,8 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "drivers/modbus/modbus_reply.h"
-#include "drivers/modbus/modbus_request.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::drivers {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/modbus/big_endian.h"
-#include "drivers/modbus/modbus_request.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::modbus {
 

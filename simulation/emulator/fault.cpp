@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/enum_table.h"
-#include "drivers/modbus/modbus_request.h"
+#include "drivers/modbus/modbus_message.h"
 #include "simulation/plant/fault_reader.h"
 
 namespace softgrip::simulation {
