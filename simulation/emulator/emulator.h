@@ -1,11 +1,13 @@
 #pragma once
-// Emulates a rig: board, fingers and faults. This class has no sockets and no clock. The caller passes each
-// request together with its time of arrival.
+// Emulates a rig: board, fingers and faults. The class Emulator has no sockets and no clock. The caller
+// passes each request together with its time of arrival.
 
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -101,6 +103,31 @@ class Emulator {
   Nanoseconds now_ = 0;
   std::uint64_t requests_ = 0;
   std::uint64_t watchdog_trips_ = 0;
+};
+
+/// Writes the true state of the emulated rig to a log. The log has a row per channel, with the name of the
+/// channel in the column `channel`:
+///
+///   time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,reading_mm,object,watchdog_tripped
+///
+/// displacement_mm and pressure_kpa are true values without noise. reading_mm is the sensor reading; its cell
+/// is empty if there is no valid reading.
+class TruthLog {
+ public:
+  /// Creates the log file. Only every `decimation`-th call of add() writes rows: one row per channel.
+  TruthLog(const std::string& path, std::uint32_t decimation);
+
+  void add(const Emulator& emulator);
+  /// Writes all rows in the buffer to the file.
+  void flush() { file_.flush(); }
+  /// Returns false if a write has failed.
+  [[nodiscard]] bool good() const { return file_.good(); }
+
+ private:
+  std::ofstream file_;
+  std::string row_;
+  std::uint32_t decimation_;
+  std::uint32_t count_ = 0;
 };
 
 }  // namespace softgrip::simulation

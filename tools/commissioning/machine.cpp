@@ -18,8 +18,8 @@
 #include "base/clock.h"
 #include "base/numbers.h"
 #include "base/periodic_schedule.h"
-#include "daemon/loop/histogram.h"
 #include "daemon/loop/real_time.h"
+#include "daemon/loop/statistics.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::doctor {

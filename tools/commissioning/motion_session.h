@@ -15,7 +15,7 @@
 
 #include "base/clock.h"
 #include "base/periodic_schedule.h"
-#include "daemon/loop/histogram.h"
+#include "daemon/loop/statistics.h"
 #include "drivers/board/board.h"
 
 namespace softgrip::rig {

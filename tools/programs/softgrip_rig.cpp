@@ -11,8 +11,8 @@
 #include <string>
 
 #include "base/net/listener.h"
+#include "simulation/emulator/emulator.h"
 #include "simulation/emulator/server.h"
-#include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/program.h"

@@ -1,4 +1,4 @@
-#include "daemon/loop/histogram.h"
+#include "daemon/loop/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace softgrip::daemon::histogram_test {
+namespace softgrip::daemon::statistics_test {
 namespace {
 
 TEST(Histogram, IsEmptyAtFirst) {
@@ -88,4 +88,4 @@ TEST(Histogram, CanBeReadWhileItRecords) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon::histogram_test
+}  // namespace softgrip::daemon::statistics_test

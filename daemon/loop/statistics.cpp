@@ -1,4 +1,4 @@
-#include "daemon/loop/histogram.h"
+#include "daemon/loop/statistics.h"
 
 #include <algorithm>
 #include <bit>
