@@ -1,10 +1,13 @@
 #pragma once
 // The screen of `softgrip watch`: status with trends, the latest events, the result of the last key, and the
-// key help.
+// key help. The keys are converted to requests to the daemon. The functions do not access a terminal or a
+// socket.
 
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +15,44 @@
 #include "tools/client/daemon_text.h"
 
 namespace softgrip::tools {
+
+/// Converts the keys for stop and vent to requests at once. Start and release move the fingers, so they need
+/// a confirmation: a key that the user types within `confirmation_timeout_s` after the question.
+class KeyDialogue {
+ public:
+  static constexpr double confirmation_timeout_s = 10;
+
+  struct Outcome {
+    bool quit = false;
+    std::optional<nlohmann::ordered_json> request;  ///< request to the daemon; nullopt: no request
+  };
+  /// Processes the keys that were typed since the last call. `last_sequence` is the name of the sequence that
+  /// the start key offers; empty: the start key offers none. If a key causes a question, the keys that follow
+  /// this key are dropped, so that pasted text cannot confirm the question. Arrow keys and function keys are
+  /// ignored.
+  Outcome process(std::string_view typed, double time_s, const std::string& last_sequence);
+  /// Withdraws the question if it has waited for an answer for `confirmation_timeout_s`. Returns true if this
+  /// call has withdrawn a question.
+  bool expire(double time_s);
+
+  /// Returns the question that waits for an answer; "" if there is none.
+  [[nodiscard]] std::string question() const;
+  /// Returns the help on the keys as one line of 58 columns.
+  [[nodiscard]] static std::string_view help();
+
+ private:
+  enum class State : unsigned char { idle, reading_name, confirming };
+  Outcome key(char key, double time_s, const std::string& last_sequence);
+  Outcome name_key(char key, double time_s);
+  void ask_confirmation(nlohmann::ordered_json request, std::string question, double time_s);
+
+  State state_ = State::idle;
+  double asked_at_s_ = 0;
+  std::string name_;
+  std::string proposed_name_;
+  std::string question_;
+  nlohmann::ordered_json request_;
+};
 
 /// The data from which the screen is drawn.
 struct LiveState {

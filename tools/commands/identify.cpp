@@ -169,9 +169,8 @@ ExitCode run(const IdentifyOptions& chosen, const std::vector<std::string>& call
                        page, options.figures);
       !written)
     return fail(ExitCode::io, written.error());
-  std::vector<sysid::LogSeries> series =
-      series_of(all->logs, result.records, result.scores, "identified", false);
-  for (sysid::LogSeries& one :
+  std::vector<LogSeries> series = series_of(all->logs, result.records, result.scores, "identified", false);
+  for (LogSeries& one :
        series_of(all->validation_logs, all->validation_records, all->validation, "identified", true))
     series.push_back(std::move(one));
   if (const auto written = write_series(options.out, series); !written)

@@ -2,39 +2,96 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
 
 #include "base/files.h"
+#include "base/numbers.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/logs/csv_text.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
 #include "tools/verification/verification.h"
 
 namespace softgrip::tools {
+namespace {
 
-std::vector<sysid::LogSeries> series_of(const std::vector<sysid::Log>& logs,
-                                        const std::vector<sysid::Record>& records,
-                                        const std::vector<sysid::Score>& scores, const std::string& model,
-                                        bool held_out) {
-  std::vector<sysid::LogSeries> all;
+std::string cell(double value) {
+  return std::isfinite(value) ? shortest(value) : std::string();
+}
+
+}  // namespace
+
+LogSeries series_of(const sysid::Log& log, const sysid::Record& record, bool all_held_out) {
+  LogSeries series;
+  // An averaged record has other samples than the log from which it was made.
+  const bool own_samples = record.size() == log.size();
+  series.name = log.name;
+  series.output_unit = record.output_unit;
+  series.time_s = own_samples ? log.time_s : record.time_s;
+  series.drive_kpa = record.drive_kpa;
+  series.measured_mm = own_samples ? log.displacement_mm : record.reading_mm;
+  series.held_out.resize(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const bool read = std::isfinite(series.measured_mm[i]);
+    series.held_out[i] = read && (all_held_out || !std::isfinite(record.reading_mm[i]));
+  }
+  return series;
+}
+
+std::string series_csv(const LogSeries& series) {
+  const std::string unit = "_" + std::string(model::name_of(series.output_unit));
+  std::string text = "time_s,drive_kpa,measured" + unit;
+  for (const LogSeries::Predicted& predicted : series.predicted) {
+    text += ',' + sysid::as_cell("predicted_" + predicted.model + unit);
+    text += ',' + sysid::as_cell("residual_" + predicted.model + unit);
+  }
+  text += ",held_out\n";
+  text.reserve(series.time_s.size() * (60 + 40 * series.predicted.size()));
+  for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+    text += shortest(series.time_s[i]) + ',' + cell(series.drive_kpa[i]) + ',' + cell(series.measured_mm[i]);
+    for (const LogSeries::Predicted& predicted : series.predicted)
+      text += ',' + cell(predicted.mm[i]) + ',' + cell(series.measured_mm[i] - predicted.mm[i]);
+    text += !series.held_out.empty() && series.held_out[i] ? ",1\n" : ",0\n";
+  }
+  return text;
+}
+
+std::string series_path(std::string_view log_name) {
+  constexpr std::string_view kept = "-_. ()";
+  std::string folder;
+  for (const char c : log_name) {
+    const bool plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || kept.find(c) != std::string_view::npos;
+    folder += plain ? c : '_';
+  }
+  const bool only_dots = folder.find_first_not_of('.') == std::string::npos;
+  return (only_dots ? "log" : folder) + "/series.csv";
+}
+
+std::vector<LogSeries> series_of(const std::vector<sysid::Log>& logs,
+                                 const std::vector<sysid::Record>& records,
+                                 const std::vector<sysid::Score>& scores, const std::string& model,
+                                 bool held_out) {
+  std::vector<LogSeries> all;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    all.push_back(sysid::series_of(logs[i], records[i], held_out));
+    all.push_back(series_of(logs[i], records[i], held_out));
     all.back().predicted.push_back({model, scores[i].prediction_mm});
   }
   return all;
 }
 
-std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
-                                        const std::vector<sysid::Log>& logs) {
+std::vector<LogSeries> series_of(const sysid::Diagnosis& diagnosis, const std::vector<sysid::Log>& logs) {
   std::vector<std::pair<const char*, const sysid::StructureFit*>> fits{
       {"given", &diagnosis.as_given}, {"recalibrated", &diagnosis.recalibrated}};
   if (sysid::is_extended(diagnosis)) fits.emplace_back("extended", &diagnosis.extended);
-  std::vector<sysid::LogSeries> all;
+  std::vector<LogSeries> all;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const sysid::Record& record = diagnosis.records[i];
-    all.push_back(sysid::series_of(logs[i], record, false));
+    all.push_back(series_of(logs[i], record, false));
     // Outliers were excluded from the fit, but they were not held out for validation.
     all.back().held_out.clear();
     for (const auto& [name, fit] : fits) {
@@ -70,15 +127,14 @@ void add_figures_option(CLI::App& command, std::string& folder) {
 }
 
 tl::expected<void, std::string> write_series(const std::string& folder,
-                                             const std::vector<sysid::LogSeries>& series) {
+                                             const std::vector<LogSeries>& series) {
   std::map<std::string, int> seen;
-  for (const sysid::LogSeries& one : series) {
+  for (const LogSeries& one : series) {
     // A log may be an input twice: for the fit and for the prediction. The second series of this log needs a
     // different folder.
-    const std::string plain = sysid::series_path(one.name);
+    const std::string plain = series_path(one.name);
     const int count = ++seen[plain];
-    const std::string name =
-        count == 1 ? plain : sysid::series_path(one.name + " (" + std::to_string(count) + ")");
+    const std::string name = count == 1 ? plain : series_path(one.name + " (" + std::to_string(count) + ")");
     const std::string path = (std::filesystem::path(folder) / name).string();
     if (auto written = write_file(path, series_csv(one)); !written) return written;
   }

@@ -18,7 +18,6 @@
 #include "base/exit_code.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"
-#include "tools/client/key_dialogue.h"
 #include "tools/client/live_view.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"

@@ -15,7 +15,7 @@
 #include "tools/web/client.h"
 #include "tools/web/commander.h"
 #include "tools/web/connection_limits.h"
-#include "tools/web/daemon_watch.h"
+#include "tools/web/live_state.h"
 #include "tools/web/site.h"
 
 namespace softgrip::web {
