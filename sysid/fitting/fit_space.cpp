@@ -22,12 +22,16 @@ bool is_logarithmic(const model::ParameterSpec& spec) {
 /// Largest dead time, lag or period that a fit permits, in units of time_unit_s().
 constexpr double largest_latency = 10;
 
-/// Largest magnitude of a gain or of a rate per kPa that a fit permits, in units of 1 / pressure_unit_kpa().
+/// Largest magnitude of a gain or of a rate per kPa that a fit permits, in units of displacement_unit_mm() /
+/// pressure_unit_kpa() for a gain, and in units of 1 / pressure_unit_kpa() for a rate.
 /// The readings cannot distinguish a larger rate from a jump of the displacement.
 constexpr double largest_per_pressure = 10;
 
-FreeParameter model_parameter(const model::Model& model, std::size_t flat_index, double time_unit_s,
-                              double pressure_unit_kpa) {
+struct FitUnits {
+  double time_s, pressure_kpa, displacement_mm;
+};
+
+FreeParameter model_parameter(const model::Model& model, std::size_t flat_index, const FitUnits& units) {
   const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
   FreeParameter p;
   p.flat_index = flat_index;
@@ -41,12 +45,13 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index,
   if (spec.lower == 0 && spec.neutral == 0) p.lower = 1e-6 * spec.scale;
   p.upper = spec.upper;
   if (spec.latency) {
-    p.scale = spec.scale * time_unit_s;
-    p.upper = std::min(spec.upper, largest_latency * time_unit_s);
+    p.scale = spec.scale * units.time_s;
+    p.upper = std::min(spec.upper, largest_latency * units.time_s);
   }
   if (spec.per_pressure) {
-    const double largest = largest_per_pressure / pressure_unit_kpa;
-    p.scale = spec.scale / pressure_unit_kpa;
+    const double unit = (spec.unit.starts_with("mm") ? units.displacement_mm : 1.0) / units.pressure_kpa;
+    const double largest = largest_per_pressure * unit;
+    p.scale = spec.scale * unit;
     p.lower = std::max(p.lower, -largest);
     p.upper = std::min(spec.upper, largest);
   }
@@ -85,8 +90,8 @@ double FreeParameter::slope(double z) const {
 FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records,
                    const std::vector<std::size_t>& free_flat)
     : base_(model), base_starts_(rest_starts(model, records)) {
-  const double unit_s = time_unit_s(records), unit_kpa = pressure_unit_kpa(records);
-  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index, unit_s, unit_kpa));
+  const FitUnits units{time_unit_s(records), pressure_unit_kpa(records), displacement_unit_mm(records)};
+  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index, units));
   const std::size_t branches = branch_time_constants_s(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];

@@ -112,6 +112,13 @@ double pressure_unit_kpa(const std::vector<Record>& records) {
   return largest_kpa > 0 ? std::min(1.0, largest_kpa / least_of_a_finger_kpa) : 1;
 }
 
+double displacement_unit_mm(const std::vector<Record>& records) {
+  constexpr double largest_of_a_finger_mm = 40;
+  double span_mm = 0;
+  for (const Record& record : records) span_mm = std::max(span_mm, record.span_mm);
+  return std::max(1.0, span_mm / largest_of_a_finger_mm);
+}
+
 void hide_reading(Record& record, std::size_t sample) {
   if (!std::isfinite(record.reading_mm[sample])) return;
   record.reading_mm[sample] = std::numeric_limits<double>::quiet_NaN();

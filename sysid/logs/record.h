@@ -119,6 +119,12 @@ struct Record {
 /// @param records  at least one record.
 [[nodiscard]] double pressure_unit_kpa(const std::vector<Record>& records);
 
+/// Returns the unit of displacement in which a fit searches for gains [mm]. The unit is 1 mm if the largest
+/// span of the readings is at most 40 mm, as it is for soft fingers. Otherwise the unit is 2.5 % of the span,
+/// for example if the readings are in micrometres. All actuators then have the same limits per span.
+/// @param records  at least one record.
+[[nodiscard]] double displacement_unit_mm(const std::vector<Record>& records);
+
 /// Sets the reading of a sample to NaN and updates the number of readings in the record.
 void hide_reading(Record& record, std::size_t sample);
 

@@ -79,6 +79,17 @@ TEST(Identify, TheUnitOfThePressureDoesNotMatter) {
   EXPECT_NEAR(result->rmse_mm, 0.05, 0.02 * 0.05);
 }
 
+/// The gain of this rig is 1000 times that of a finger, as if its readings were in micrometres.
+TEST(Identify, TheUnitOfTheDisplacementDoesNotMatter) {
+  std::vector<Log> logs = two_logs(scattered(loaded("zhang2025"), 0.05, 1));
+  for (Log& log : logs) {
+    for (double& y : log.displacement_mm) y *= 1000;
+  }
+  const auto result = identify(logs, base_model(logs, 2));
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_NEAR(result->rmse_mm, 50, 0.02 * 50);
+}
+
 /// The central example of the project: if the model structure has no latency, the hysteresis block absorbs
 /// the latency of the rig.
 TEST(Identify, MissingLatencyMakesTheModelNotInvertible) {
