@@ -25,6 +25,7 @@ class UnusedParts {
     name_unused_times();
     refuse_rows_of_fingers();
     name_unused_columns();
+    name_equal_columns();
     name_idle_options();
   }
 
@@ -93,6 +94,20 @@ class UnusedParts {
           "unused columns: " +
           with_commas(std::vector<std::string>(names.begin() + static_cast<std::ptrdiff_t>(i), end),
                       [](const std::string& name) { return name; }));
+    }
+  }
+
+  /// Adds a warning for each unused column with the name of a used one. The guess takes the first of them.
+  void name_equal_columns() {
+    for (std::size_t used = 0; used < table_.columns.size(); ++used) {
+      const std::string& name = table_.columns[used].name;
+      for (std::size_t i = 0; i < table_.columns.size() && sources_.uses(used) && !name.empty(); ++i) {
+        if (!sources_.uses(i) && table_.columns[i].name == name)
+          remarks_.warnings.push_back("column " + std::to_string(i + 1) +
+                                      " is not used, but has the name of column " + std::to_string(used + 1) +
+                                      ": '" + document::shown(name, 40) +
+                                      "'. State the correct column by its number");
+      }
     }
   }
 

@@ -44,6 +44,15 @@ TEST_F(UnusedPartsTest, AColumnWithoutARoleIsANote) {
   EXPECT_TRUE(problems_.empty()) << problems_.format();
 }
 
+TEST_F(UnusedPartsTest, AnUnusedColumnWithTheNameOfAUsedOneIsAWarning) {
+  table_.columns.push_back(column("x", {2, 4, 6}));
+  report();
+  EXPECT_EQ(
+      remarks_.warnings,
+      std::vector<std::string>{"column 4 is not used, but has the name of column 3: 'x'. State the correct "
+                               "column by its number"});
+}
+
 TEST_F(UnusedPartsTest, AnOptionWithoutEffectIsAWarning) {
   mapping_.sheet = "Data";
   report();
