@@ -79,9 +79,9 @@ bool has_unusual_gain(const JudgedChange& judged) {
 }
 
 std::string unusual_gain(double percent, bool is_limited) {
-  return "The gain in the later logs differs by " + significant(percent, 3) + " %" +
-         (is_limited ? " or more" : "") +
-         " from the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
+  return "The gain in the later logs is " + std::string(is_limited ? "at least " : "") +
+         significant(std::abs(percent), 3) + " % " + (percent < 0 ? "lower" : "higher") +
+         " than the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
          "this difference is not significant. Record more healthy logs";
 }
 
@@ -321,7 +321,9 @@ class Judge {
   void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
               const std::vector<FittedEffect>& found, JudgedChange& judged) const {
     judged.intervals = intervals_of(readings, found, healthy_);
-    if (spread_.is_exceeded(readings.plain_rms(found), judged.loss_left)) {
+    judged.later_mm = readings.plain_rms({});
+    judged.explained_mm = found.empty() ? judged.later_mm : readings.plain_rms(found);
+    if (spread_.is_exceeded(judged.explained_mm, judged.loss_left)) {
       judged.unusual_log = decisive_record(readings, found);
       judged.left_over = judged.unusual_log.empty();
     }
@@ -339,8 +341,6 @@ class Judge {
     const LaterReadings::Nuisance nuisance = readings.nuisance(found);
     judged.zero_mm = nuisance.zero_mm - base_.zero_mm;
     judged.gain_percent = 100 * nuisance.gain;
-    judged.later_mm = readings.plain_rms({});
-    judged.explained_mm = readings.plain_rms(found);
     for (const Effect& effect : effects) {
       const std::vector<bool> required = required_rows(readings, effect.appears);
       if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) <

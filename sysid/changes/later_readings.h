@@ -25,6 +25,8 @@ class LaterReadings {
   /// other units.
   [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
   [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
+  /// Returns the readings of all records except one.
+  /// @param record  index in records().
   [[nodiscard]] LaterReadings without_record(std::size_t record) const;
 
   /// Returns the whitened residual of the baseline model with these effects. Zero offset and gain deviation

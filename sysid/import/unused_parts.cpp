@@ -97,16 +97,20 @@ class UnusedParts {
     }
   }
 
-  /// Adds a warning for each unused column with the name of a used one. The guess takes the first of them.
+  /// Adds a warning for each unused column that has the same name as a column of readings. The guess takes
+  /// the first of them. name_unused_times() reports repeated time columns.
   void name_equal_columns() {
-    for (std::size_t used = 0; used < table_.columns.size(); ++used) {
-      const std::string& name = table_.columns[used].name;
-      for (std::size_t i = 0; i < table_.columns.size() && sources_.uses(used) && !name.empty(); ++i) {
-        if (!sources_.uses(i) && table_.columns[i].name == name)
+    for (const RoleSpec& spec : roles) {
+      if (spec.role == Role::time) continue;
+      for (const std::size_t used : sources_.of_roles[static_cast<std::size_t>(spec.role)].columns) {
+        const std::string& name = table_.columns[used].name;
+        for (std::size_t i = 0; i < table_.columns.size() && !name.empty(); ++i) {
+          if (table_.columns[i].name != name || sources_.uses(i)) continue;
           remarks_.warnings.push_back("column " + std::to_string(i + 1) +
                                       " is not used, but has the name of column " + std::to_string(used + 1) +
                                       ": '" + document::shown(name, 40) +
                                       "'. State the correct column by its number");
+        }
       }
     }
   }

@@ -91,8 +91,9 @@ inline constexpr double run_directions = 3;
 /// Standard deviation of the gain of a finger between runs without a change, as a share of the gain. It is
 /// used if there are too few healthy runs to measure the variation.
 inline constexpr double usual_gain_spread = 0.01;
-/// Number of runs with which `usual_gain_spread` counts beside the measured spread of the gain. Three runs
-/// are the smallest number whose spread can be distinguished from chance.
+/// Number of further runs that count as much as `usual_gain_spread` if the spread of the gain is estimated.
+/// The spread that four healthy runs measure (3 degrees of freedom) then has the same weight as the usual
+/// spread.
 inline constexpr double usual_gain_runs = 3;
 /// Length of the blocks that the bootstrap resamples [s]. A block lasts longer than the fast part of the
 /// creep.

@@ -68,6 +68,8 @@ TEST(LaterReadings, EachRecordHasItsOwnGainWithinTheSpread) {
   EXPECT_LT(different.plain_rms({}), 1.2 * same.plain_rms({}));
   EXPECT_LT(different.white({}).norm(), 1.2 * same.white({}).norm());
   EXPECT_NEAR(different.nuisance({}).gain, 0, 0.01);
+  const Eigen::VectorXd gains = base.gain_spread * different.white_and_gain({}).tail(2);
+  EXPECT_NEAR(gains(0) - gains(1), 0.04, 0.008);
   EXPECT_GT(readings(0.85, 0.85).plain_rms({}), 3 * same.plain_rms({}));
   EXPECT_LT(readings(1, 0.85).without_record(1).plain_rms({}), 1.2 * same.plain_rms({}));
 }

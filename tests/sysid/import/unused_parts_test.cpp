@@ -53,6 +53,13 @@ TEST_F(UnusedPartsTest, AnUnusedColumnWithTheNameOfAUsedOneIsAWarning) {
                                "column by its number"});
 }
 
+TEST_F(UnusedPartsTest, ARepeatedTimeColumnIsOnlyANote) {
+  table_.columns.push_back(table_.columns.front());
+  report();
+  EXPECT_TRUE(remarks_.warnings.empty());
+  EXPECT_FALSE(remarks_.notes.empty());
+}
+
 TEST_F(UnusedPartsTest, AnOptionWithoutEffectIsAWarning) {
   mapping_.sheet = "Data";
   report();
