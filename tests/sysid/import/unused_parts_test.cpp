@@ -53,11 +53,12 @@ TEST_F(UnusedPartsTest, AnUnusedColumnWithTheNameOfAUsedOneIsAWarning) {
                                "column by its number"});
 }
 
-TEST_F(UnusedPartsTest, ARepeatedTimeColumnIsOnlyANote) {
+TEST_F(UnusedPartsTest, ARepeatedTimeColumnIsReportedOnce) {
   table_.columns.push_back(table_.columns.front());
   report();
-  EXPECT_TRUE(remarks_.warnings.empty());
-  EXPECT_FALSE(remarks_.notes.empty());
+  ASSERT_EQ(remarks_.warnings.size(), 1U);
+  EXPECT_EQ(remarks_.warnings.front().find("the column 't' looks like a time"), 0U)
+      << remarks_.warnings.front();
 }
 
 TEST_F(UnusedPartsTest, AnOptionWithoutEffectIsAWarning) {
