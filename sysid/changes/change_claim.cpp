@@ -92,6 +92,14 @@ bool is_shown(const CauseSearch& search, const ScoredEffect& scored, const std::
                  residuals_with(search.readings, search.with(scored.fit.fitted)));
 }
 
+/// Returns the share of the remaining error that the effect explains. It is the larger one of two shares: of
+/// the mean square error of the readings, and of the excess of the whitened mean square over 1, its value in
+/// the healthy logs. Whitening removes slow errors, so the second share does not show a slow effect.
+double explained_share(const CauseSearch& search, const ScoredEffect& scored, const Claim& claim) {
+  const double excess = per_bin(search.readings, search.without) - 1;
+  return std::max(1 - square(claim.error_with / claim.error_without), excess > 0 ? scored.gain / excess : 0);
+}
+
 /// Returns true if an effect with more parameters has the same influence on the readings as the best effect,
 /// because the best effect is a special case of it. For example, a contact near the rest position is a
 /// smaller gain.
@@ -140,6 +148,7 @@ Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
   claim.largest_size = largest_size(readings, size.unit);
   claim.error_without = readings.plain_rms(search.found);
   claim.error_with = readings.plain_rms(all);
+  claim.explained_share = explained_share(search, scored, claim);
   claim.predicts_worse = predicts_worse(search, fitted.effect);
   claim.shown_there = is_shown(search, scored, required);
   return veto_of(claim);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid {
 
 Veto veto_of(const Claim& claim) {
@@ -15,6 +17,7 @@ Veto veto_of(const Claim& claim) {
     if (std::min(std::abs(lower), std::abs(upper)) > claim.largest_size) return Veto::size_beyond_range;
   }
   if (!(claim.error_with < claim.error_without)) return Veto::error_not_reduced;
+  if (claim.explained_share < limits::least_explained_share) return Veto::explains_too_little;
   if (claim.predicts_worse) return Veto::not_predictive;
   if (!claim.shown_there) return Veto::absent_where_required;
   return Veto::none;
@@ -30,6 +33,8 @@ std::string_view reason_of(Veto veto) {
       return "the size of the effect exceeds the range of the signal";
     case Veto::error_not_reduced:
       return "the effect does not reduce the error of the readings";
+    case Veto::explains_too_little:
+      return "the effect explains less than 20 % of the remaining error";
     case Veto::not_predictive:
       return "the effect reduces the error on the fitted readings but increases the error on other readings";
     case Veto::not_tested:

@@ -20,6 +20,8 @@ struct Claim {
   double largest_size = 0;
   double error_without = 0;  ///< RMSE of the model without the cause, over the evaluated readings
   double error_with = 0;     ///< RMSE of the model with the cause, over the evaluated readings
+  /// Share of the remaining error that the cause explains, at most 1.
+  double explained_share = 1;
   /// True: the cause increases the prediction error on readings that were left out of the fit.
   bool predicts_worse = false;
   bool condition_met = true;  ///< true: the data meet the condition under which the cause acts
@@ -32,6 +34,7 @@ enum class Veto {
   size_uncertain,
   size_beyond_range,
   error_not_reduced,
+  explains_too_little,
   not_predictive,
   not_tested,
   absent_where_required,

@@ -76,6 +76,21 @@ TEST_F(ChangeClaim, AnInvisibleEffectIsNotTested) {
   EXPECT_EQ(vetoed(search_, delay), Veto::not_tested);
 }
 
+/// A loss of pressure causes the larger part of the error, with and without whitening.
+TEST_F(ChangeClaim, AnEffectThatExplainsASmallPartOfTheErrorIsRejected) {
+  const LaterReadings later = readings({.lost_kpa_per_s = 3, .delay_s = 0.02});
+  const Eigen::VectorXd without = later.white(none_);
+  const CauseSearch search{later, none_, without, healthy_, spread_};
+  std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
+  std::erase_if(effects, [](const Effect& effect) { return effect.id != "transport_delay"; });
+  ScoredEffect delay = ranked_effects(later, effects, {}, {}, 1).front();
+  const double excess = per_bin(later, without) - 1;
+  delay.gain = 0.19 * excess;
+  EXPECT_EQ(vetoed(search, delay), Veto::explains_too_little);
+  delay.gain = 0.21 * excess;
+  EXPECT_EQ(vetoed(search, delay), Veto::none);
+}
+
 /// Returns a log with short rests between ramps. The readings are the prediction of `base`, noise, and a
 /// drift of 0.02 mm/s.
 Log drifting_log(const Base& base) {

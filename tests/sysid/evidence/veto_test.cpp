@@ -32,6 +32,11 @@ TEST(Veto, EachUnmetConditionRejectsTheClaim) {
   claim.error_with = 1.03;
   EXPECT_EQ(veto_of(claim), Veto::error_not_reduced);
   claim = sound();
+  claim.explained_share = 0.19;
+  EXPECT_EQ(veto_of(claim), Veto::explains_too_little);
+  claim.explained_share = 0.2;
+  EXPECT_EQ(veto_of(claim), Veto::none);
+  claim = sound();
   claim.predicts_worse = true;
   EXPECT_EQ(veto_of(claim), Veto::not_predictive);
   claim = sound();
@@ -50,8 +55,9 @@ TEST(Veto, UnchangedErrorIsRejectedAsNotReduced) {
 
 TEST(Veto, EachVetoHasADistinctReason) {
   std::set<std::string_view> reasons;
-  for (const Veto veto : {Veto::size_uncertain, Veto::size_beyond_range, Veto::error_not_reduced,
-                          Veto::not_predictive, Veto::not_tested, Veto::absent_where_required})
+  for (const Veto veto :
+       {Veto::size_uncertain, Veto::size_beyond_range, Veto::error_not_reduced, Veto::explains_too_little,
+        Veto::not_predictive, Veto::not_tested, Veto::absent_where_required})
     EXPECT_TRUE(reasons.insert(reason_of(veto)).second);
 }
 
