@@ -104,6 +104,7 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
     const std::vector<double> factor = softened(extension.softening, record, base.largest_kpa);
     for (std::size_t i = 0; i < y.size(); ++i) y[i] *= factor[i];
   }
+  if (extension.lead_s > 0) y = leading_by(extension.lead_s, record, y);
   if (base.judged == Judged::pressure)
     y = pressure_behind(extension.line, extension.loss, record, std::move(y));
   return y;

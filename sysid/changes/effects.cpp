@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "model/blocks/ageing.h"
+#include "model/blocks/clock_offset.h"
 #include "model/blocks/crescent_hysteresis.h"
 #include "model/blocks/duhem_hysteresis.h"
 #include "model/blocks/pseudo_elastic_softening.h"
@@ -111,6 +112,12 @@ class Collector {
       for (const std::size_t i : fitted) effect.starts.back().push_back(start.values[i]);
     }
     effect.starts = some(std::move(effect.starts));
+    // The block extrapolates the motion, because it does not know later samples. A diagnosis knows them.
+    if (form.type == model::block_type<model::ClockOffset>()) {
+      effect.apply = [](Extension& e, const std::vector<double>& n) { e.lead_s += n[0]; };
+      effects_.push_back(std::move(effect));
+      return;
+    }
     const bool of_valve = cause.station == model::Station::valve;
     effect.apply = [block = starts.front(), fitted, of_valve](Extension& extension,
                                                               const std::vector<double>& numbers) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/interpolation.h"
 #include "model/blocks/transport_delay.h"
 #include "model/chain.h"
 #include "model/named.h"
@@ -65,6 +66,12 @@ std::vector<double> added_by(const Crescent& crescent, const Record& record, dou
     added[i] = crescent.share * (between - 0.5 * (up + down));
   }
   return added;
+}
+
+std::vector<double> leading_by(double lead_s, const Record& record, const std::vector<double>& series) {
+  std::vector<double> later_s = record.time_s;
+  for (double& s : later_s) s += lead_s;
+  return interpolated(record.time_s, series, later_s);
 }
 
 std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& loss, const Record& record,

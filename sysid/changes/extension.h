@@ -73,6 +73,7 @@ struct Extension {
   Crescent crescent;
   PressureLoss loss;
   SlowLine line;
+  double lead_s = 0;  ///< time by which the readings lead the motion, >= 0
 };
 
 /// Returns the pressure at the output of the valve blocks at each sample of the record.
@@ -91,6 +92,11 @@ struct Extension {
 /// Returns the displacement that the hysteresis loop adds at each sample, as a share of the span.
 [[nodiscard]] std::vector<double> added_by(const Crescent& crescent, const Record& record,
                                            double largest_kpa);
+
+/// Returns the series that leads another series by a time: at each sample, the value of the other series
+/// `lead_s` later, with linear interpolation. Near the end of the record, the last value is returned.
+[[nodiscard]] std::vector<double> leading_by(double lead_s, const Record& record,
+                                             const std::vector<double>& series);
 
 /// Returns the pressure at each sample after the effects of a slow line and of a pressure loss. The argument
 /// is the pressure without these effects.

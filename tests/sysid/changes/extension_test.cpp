@@ -49,6 +49,17 @@ TEST(Extension, LeakLowersTheHeldPressureUntilTheCommandMoves) {
   EXPECT_EQ(pressure_behind({}, {}, r, r.drive_kpa), r.drive_kpa);
 }
 
+TEST(Extension, AClockOffsetShiftsTheSeriesBetweenSamples) {
+  Record r;
+  r.time_s = {0, 0.1, 0.3, 0.4, 1};
+  std::vector<double> series{0, 1, 5, 5, 11};
+  const std::vector<double> early = leading_by(0.25, r, series);
+  const std::vector<double> expected{4, 5, 6.5, 7.5, 11};  // at 0.25, 0.35, 0.55, 0.65 and 1.25 s
+  ASSERT_EQ(early.size(), expected.size());
+  for (std::size_t i = 0; i < early.size(); ++i) EXPECT_NEAR(early[i], expected[i], 1e-12) << i;
+  EXPECT_EQ(leading_by(0, r, series), series);
+}
+
 TEST(Extension, EffectsOnAVacuumActuatorMirrorThoseOnAPressureActuator) {
   const Record r = record();
   Record vacuum = r;
