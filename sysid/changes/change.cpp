@@ -96,6 +96,19 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
         "the finger are evaluated together");
 }
 
+/// Warns if the command of a later log differs from the commands of all healthy logs.
+void warn_of_another_command(const std::vector<Log>& healthy, const std::vector<Log>& later,
+                             std::vector<std::string>& warnings) {
+  for (const Log& log : later) {
+    if (std::none_of(healthy.begin(), healthy.end(),
+                     [&](const Log& other) { return have_same_command(log, other, limits::rest_share); }))
+      return warnings.push_back(
+          "No healthy log has the same command as " + log.name +
+          ". The model error for another command may look like a change. To exclude this, record a later log "
+          "with the command of a healthy log");
+  }
+}
+
 std::string unused_pressure(const DriveChoice& choice) {
   return "For healthy runs that were left out of the fit, the prediction from the command is better than the "
          "prediction from the measured pressure (RMS errors " +
@@ -208,6 +221,8 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
     std::erase_if(diagnosis.causes, [&](const ChangeCause& c) { return c.gain < beside_another * most; });
   }
   diagnosis.verdict = verdict_of(diagnosis);
+  if (diagnosis.verdict != ChangeVerdict::unchanged)
+    warn_of_another_command(healthy, later, diagnosis.warnings);
   diagnosis.output_unit = healthy.front().output_unit;
   for (ChangeCause& cause : diagnosis.causes) cause.output_unit = diagnosis.output_unit;
   for (JudgedChange& judged : diagnosis.readings) judged.output_unit = diagnosis.output_unit;

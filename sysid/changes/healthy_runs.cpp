@@ -148,6 +148,11 @@ Disagreement added_disagreement(const Base& base, const std::vector<Record>& lat
     most.mean_square = std::max(most.mean_square, now.mean_square - healthy.mean_square);
     most.loss = std::max(most.loss, now.loss - healthy.loss);
   }
+  // The permitted error is run_to_run_factor() of the healthy runs times the result. The healthy runs do not
+  // show the error for the later input. The disagreement shows it as roughly as a single run.
+  const double roughness = run_to_run_factor(1) / run_to_run_factor(base.units.runs());
+  most.mean_square *= roughness;
+  most.loss *= roughness;
   return most;
 }
 

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/interpolation.h"
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log_columns.h"
 
@@ -132,6 +134,16 @@ double largest_command_kpa(const std::vector<Log>& logs) {
     for (const double p : log.pressure_command_kpa) largest = std::max(largest, p);
   }
   return largest;
+}
+
+bool have_same_command(const Log& log, const Log& other, double share) {
+  const std::vector<double> others = interpolated(other.time_s, other.pressure_command_kpa, log.time_s);
+  double squares = 0, largest_kpa = 0;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    squares += square(log.pressure_command_kpa[i] - others[i]);
+    largest_kpa = std::max({largest_kpa, std::abs(log.pressure_command_kpa[i]), std::abs(others[i])});
+  }
+  return std::sqrt(squares / static_cast<double>(others.size())) <= share * largest_kpa;
 }
 
 Log slice(const Log& log, std::size_t first, std::size_t last) {

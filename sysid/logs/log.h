@@ -131,6 +131,12 @@ struct Campaign {
 /// Returns the highest commanded pressure of the logs [kPa]; 0 if no command is above 0.
 [[nodiscard]] double largest_command_kpa(const std::vector<Log>& logs);
 
+/// Returns true if two logs have the same command apart from small deviations: the root mean square of the
+/// difference is at most `share` times the largest command. The command of `other` is assumed to be constant
+/// after its end.
+/// @param log, other  logs with at least one sample.
+[[nodiscard]] bool have_same_command(const Log& log, const Log& other, double share);
+
 /// Returns the difference between the largest and the smallest reading [mm]; 0 if the log has no readings.
 [[nodiscard]] double span_mm(const Log& log);
 

@@ -167,7 +167,13 @@ TEST(Change, WithOneHealthyLogASmallGainDifferenceIsNoChange) {
   const auto is_changed = [](double gain) {
     const auto d = diagnose_change({log_of({}, 1)}, {log_of({.gain = gain}, 5)});
     EXPECT_TRUE(d) << d.error();
-    return d->verdict != ChangeVerdict::unchanged;
+    const bool changed = d->verdict != ChangeVerdict::unchanged;
+    EXPECT_EQ(std::count_if(d->warnings.begin(), d->warnings.end(),
+                            [](const std::string& text) {
+                              return text.starts_with("No healthy log has the same command as log5.");
+                            }),
+              changed ? 1 : 0);
+    return changed;
   };
   EXPECT_FALSE(is_changed(0.2 * 0.9555));  // would be ageing if the permitted difference were only 0.8 %
   EXPECT_TRUE(is_changed(0.2 * 0.94));

@@ -423,5 +423,28 @@ TEST(Log, ASliceStartsAtZero) {
   EXPECT_EQ(part.pressure_command_kpa.front(), 49);
 }
 
+TEST(Log, SameCommandMayHaveAnotherSamplingAndSmallDeviations) {
+  const Log log = good_log();
+  Log coarse = slice(log, 0, 1);
+  for (std::size_t i = 3; i < log.size(); i += 3) {
+    coarse.time_s.push_back(log.time_s[i]);
+    coarse.pressure_command_kpa.push_back(log.pressure_command_kpa[i]);
+  }
+  EXPECT_TRUE(have_same_command(log, log, 0.05));
+  EXPECT_TRUE(have_same_command(log, coarse, 0.05));
+  EXPECT_TRUE(have_same_command(coarse, log, 0.05));
+  const auto with_offset = [&](double kpa) {
+    Log other = log;
+    for (double& p : other.pressure_command_kpa) p += kpa;
+    return have_same_command(log, other, 0.05);
+  };
+  EXPECT_TRUE(with_offset(2));
+  EXPECT_FALSE(with_offset(3));
+  Log vacuum = log;
+  for (double& p : vacuum.pressure_command_kpa) p = -p;
+  EXPECT_FALSE(have_same_command(log, vacuum, 0.05));
+  EXPECT_FALSE(have_same_command(log, slice(log, 0, 40), 0.05)) << "the shorter log ends at 39 kPa";
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::log_test
