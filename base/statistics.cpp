@@ -56,6 +56,12 @@ double t_quantile(double degrees_of_freedom) {
          (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * v * v * v);
 }
 
+double chi_square_quantile(double deviate, double degrees_of_freedom) {
+  const double variance = 2 / (9 * degrees_of_freedom);
+  const double root = 1 - variance + deviate * std::sqrt(variance);
+  return degrees_of_freedom * root * root * root;
+}
+
 double f_quantile(double probability, double above, double below) {
   double lower = 0, upper = 1;
   for (int i = 0; i < 100; ++i) {

@@ -27,6 +27,8 @@ constexpr double unsettled_share = 0.3;
 /// Number of standard deviations by which the fit of an unknown start must be better than the simpler
 /// assumption (a start at rest, or the steady cycle).
 constexpr double rejected_at = 3;
+/// Numbers of an unknown start apart from the creep of the branches: the last peak and the last valley.
+constexpr double reversals = 2;
 /// Duration after the first sample from which the speed of the drive is computed [s].
 constexpr double speed_over_s = 0.1;
 /// Two numbers of the search for the last reversals of the pressure: the number of steps of the first grid,
@@ -236,7 +238,11 @@ class StartSearch {
   }
 
   /// Returns true if the initial state `moving` has a significantly smaller residual than the state `resting`
-  /// at rest: neither the noise nor the assumed model error explains the difference.
+  /// at rest: neither the noise nor the assumed model error explains the difference. Each fitted number of
+  /// the initial state reduces the residual by chance, so the limit is a quantile of the chi-square
+  /// distribution. If the model error makes the residuals so dependent that their number is below the number
+  /// of fitted numbers, half of the residuals count as free. The fit is the best of many pairs of reversals,
+  /// so the limit also increases with their number (Bonferroni; the density decreases with exp(-x/2)).
   [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
     const Eigen::VectorXd still = unexplained(resting.start);
     double sum = 0, squares = 0;
@@ -248,8 +254,13 @@ class StartSearch {
     const auto n = static_cast<double>(rows_.size());
     const double motion_mm2 = squares / n - square(sum / n);
     const double less_mm2 = resting.left.mean_square_mm2 - moving.left.mean_square_mm2;
-    const double by_chance_mm2 = moving.left.mean_square_mm2 / moving.left.independent;
-    return less_mm2 > square(rejected_at) * (by_chance_mm2 + square(limits::form_error_share) * motion_mm2);
+    const double numbers = reversals + static_cast<double>(time_constants_s_.size());
+    const double independent = moving.left.independent;
+    const double free = std::max(independent - numbers, limits::majority_share * independent);
+    const double most =
+        chi_square_quantile(limits::strict_deviate, numbers) + 2 * std::log(square(grid_steps + 1.0));
+    const double by_chance_mm2 = most * moving.left.mean_square_mm2 / free;
+    return less_mm2 > by_chance_mm2 + square(rejected_at * limits::form_error_share) * motion_mm2;
   }
 
   static constexpr double smallest_mm2 = 1e-18;

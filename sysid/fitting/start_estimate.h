@@ -14,8 +14,9 @@
 // Record::start determines which quantities are estimated. For a start at rest, this is only the offset. For
 // an unknown start, these quantities are offset, hysteresis and creep. In the automatic mode, a unit with
 // Record::start_unknown has an unknown start. Any other unit is assumed to begin at rest, unless an unknown
-// start reduces the mean square residual by more than 9 times the sum of two variances: the variance of the
-// mean of the noise, and that of a model error of 5 % of the motion.
+// start reduces the mean square residual by more than the sum of two limits. The first is the reduction that
+// noise causes with a probability of 0.1 %; it increases with the number of fitted numbers. The second is 9
+// times the mean square of a model error of 5 % of the motion.
 //
 // A single stroke does not determine the start state under pressure. If the first readings do not distinguish
 // between possible start states, the hysteresis is assumed to be in its steady cycle over the range of the

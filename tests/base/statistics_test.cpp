@@ -64,6 +64,15 @@ TEST(FQuantile, AgreesWithTheTablesOfAbramowitzAndStegun) {
   EXPECT_NEAR(f_quantile(0.99, 5, 10), 5.64, 0.005);
 }
 
+TEST(ChiSquareQuantile, MatchesTheTables) {
+  // The expected values are from Abramowitz and Stegun, table 26.8, for the probabilities 0.95 and 0.999.
+  EXPECT_NEAR(chi_square_quantile(1.645, 1), 3.841, 0.04 * 3.841);
+  EXPECT_NEAR(chi_square_quantile(3.090, 1), 10.828, 0.04 * 10.828);
+  EXPECT_NEAR(chi_square_quantile(1.645, 4), 9.488, 0.04 * 9.488);
+  EXPECT_NEAR(chi_square_quantile(3.090, 4), 18.467, 0.04 * 18.467);
+  EXPECT_NEAR(chi_square_quantile(3.090, 10), 29.588, 0.04 * 29.588);
+}
+
 TEST(FQuantile, SwappedDegreesOfFreedomGiveTheReciprocal) {
   for (const double p : {0.05, 0.3, 0.5, 0.9, 0.99})
     EXPECT_NEAR(f_quantile(p, 3, 7) * f_quantile(1 - p, 7, 3), 1, 1e-9) << p;
