@@ -240,14 +240,6 @@ class Judge {
     return std::nullopt;
   }
 
-  /// The fit divides a gain change between the effect and the permitted gain deviations of the runs. Returns
-  /// the effect with the whole change.
-  [[nodiscard]] static FittedEffect with_whole_gain(const CauseSearch& search, FittedEffect effect) {
-    if (is_sized_by_both_gains(effect))
-      effect.numbers.front() += search.readings.nuisance(search.with(effect)).gain;
-    return effect;
-  }
-
   /// Returns true if the zero offset of the later logs [mm] differs significantly from the mean zero offset
   /// of the healthy runs. A difference is significant if a healthy run would exceed it in less than 5 % of
   /// the cases.
@@ -264,7 +256,8 @@ class Judge {
                                      const std::vector<ScoredEffect>& all, const Ties& ties,
                                      JudgedChange& judged) const {
     const LaterReadings& readings = search.readings;
-    const FittedEffect best = with_whole_gain(search, scored.fit.fitted);
+    const FittedEffect best =
+        with_whole_gain(readings, scored.fit.fitted, readings.nuisance(search.with(scored.fit.fitted)).gain);
     const Binned added = readings.added({best});
     ChangeCause cause;
     cause.id = best.effect.id;

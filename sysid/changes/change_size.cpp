@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.h"
 #include "sysid/changes/next_steps.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -30,6 +32,20 @@ double largest_of(const Binned& series) {
 
 bool is_sized_by_both_gains(const FittedEffect& effect) {
   return effect.numbers.size() == 1 && number(effect, "gain_change") != nullptr;
+}
+
+FittedEffect with_whole_gain(const LaterReadings& readings, FittedEffect effect, double deviation) {
+  const bool is_gain = is_sized_by_both_gains(effect) ||
+                       (effect.numbers.size() == 1 && number(effect, "pressure_factor_change") != nullptr);
+  if (!is_gain) return effect;
+  PairSums sums;  // of the motion of the baseline model and its change by the effect
+  const Binned added = readings.added({effect});
+  for (std::size_t r = 0; r < added.size(); ++r) {
+    for (std::size_t b = 0; b < added[r].size(); ++b) sums.add(readings.plain()[r][b], added[r][b]);
+  }
+  const double gain = sums.slope();
+  if (std::abs(gain) > limits::negligible_share) effect.numbers.front() *= 1 + deviation / gain;
+  return effect;
 }
 
 double at_full_pressure(const LaterReadings& readings, const Binned& added) {

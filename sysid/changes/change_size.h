@@ -14,6 +14,13 @@ namespace softgrip::sysid {
 /// the gain.
 [[nodiscard]] bool is_sized_by_both_gains(const FittedEffect& effect);
 
+/// The fit divides a gain change between the effect and the gain deviations within the spread of the healthy
+/// logs. Returns the effect with the whole change, to first order in the deviations. An effect that does not
+/// only change the gain or the pressure is returned unchanged.
+/// @param deviation  mean relative gain deviation with this effect (LaterReadings::nuisance()).
+[[nodiscard]] FittedEffect with_whole_gain(const LaterReadings& readings, FittedEffect effect,
+                                           double deviation);
+
 /// Returns the size of an effect.
 /// @param full_pressure_mm  change of the displacement at full pressure that the effect causes [mm].
 [[nodiscard]] ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect,

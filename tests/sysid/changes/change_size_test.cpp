@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,24 @@ TEST_F(FullPressure, OfAVacuumActuatorIsItsStrongestVacuum) {
   const double by_pressure = of_records(base_.records);
   EXPECT_GT(by_pressure, 0.9 * largest_kpa);
   EXPECT_DOUBLE_EQ(of_records(vacuum), by_pressure);
+}
+
+class WholeGain : public test::PressureBase {
+ protected:
+  /// Returns the parameter of an effect on the pressure before the model, after the fit left another gain
+  /// deviation of -4 %. The model is linear.
+  [[nodiscard]] double number_of(const std::string& name) const {
+    Effect effect;
+    effect.numbers = {{name, "", 0.01, -0.9, 9}};
+    effect.apply = [](Extension& e, const std::vector<double>& n) { e.load.factor *= 1 + n[0]; };
+    return with_whole_gain(healthy_readings(base_), {effect, {-0.06}}, -0.04).numbers.front();
+  }
+};
+
+TEST_F(WholeGain, IsInTheParameterOfAGainOrOfAModulus) {
+  EXPECT_NEAR(number_of("gain_change"), -0.10, 0.001);
+  EXPECT_NEAR(number_of("pressure_factor_change"), -0.10, 0.001);
+  EXPECT_EQ(number_of("band_kpa"), -0.06);
 }
 
 }  // namespace
