@@ -36,11 +36,12 @@ struct ValveDeadband {
 
     /// Returns start values of the band. A sticking valve reaches the largest pressure in jumps whose size
     /// equals the band. The model error has a local minimum at each band for which the number of jumps is an
-    /// integer. There is one start value per number of jumps, down to a band of 1/60 of the largest pressure.
-    /// Smaller bands have similar effects, so the next start values are 10 % apart.
+    /// integer, and the largest pressure of a log need not be such a multiple of the true band. There are two
+    /// start values per number of jumps, down to a band of 1/60 of the largest pressure. Smaller bands have
+    /// similar effects, so the next start values are 10 % apart.
     static std::vector<double> bands_kpa(const Scales& s) {
       std::vector<double> bands;
-      for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);
+      for (int halves = 10; halves < 120; ++halves) bands.push_back(2 * s.largest_kpa / halves);
       for (int i = 0; i < 19; ++i) bands.push_back(s.largest_kpa / (60 * std::pow(1.1, i)));
       return bands;
     }

@@ -9,7 +9,7 @@ namespace softgrip::sysid::valve_deadband_test {
 namespace {
 
 // The valve sticks and jumps. For every stick band, one start value must be so close that the number of jumps
-// up to the largest pressure differs by at most 0.51. A fit from this start value then finds the jumps.
+// up to the largest pressure differs by at most 0.26. A fit from this start value then finds the jumps.
 TEST(ValveDeadband, EveryStickBandHasACloseStartValue) {
   Scales scales;
   scales.largest_kpa = 40;
@@ -18,7 +18,7 @@ TEST(ValveDeadband, EveryStickBandHasACloseStartValue) {
     double nearest = 1;
     for (const double start : bands)
       nearest = std::min(nearest, std::fabs(scales.largest_kpa / start - scales.largest_kpa / band));
-    EXPECT_LE(nearest, 0.51) << band;
+    EXPECT_LE(nearest, 0.26) << band;
   }
 }
 
