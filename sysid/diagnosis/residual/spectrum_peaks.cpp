@@ -6,11 +6,14 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include <unsupported/Eigen/FFT>
 
 #include "base/statistics.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -19,28 +22,91 @@ using Complex = std::complex<double>;
 
 /// Number of frequency bins on each side of a peak with which the peak is compared.
 constexpr std::size_t around = 60;
+/// Number of bins per frequency resolution of the campaign. The transform is twice as long as the campaign.
+constexpr std::size_t resolution = 2;
 constexpr double highest_looked_at_hz = 25;
 
-/// Returns the residuals of all records on one common time grid over the campaign. A sample between two grid
-/// points is divided between both points; the nearer point gets the larger part. The accuracy is sufficient
-/// for a start value.
-std::vector<Complex> on_one_grid(const std::vector<Record>& records,
-                                 const std::vector<std::vector<double>>& residual_mm, double interval_s,
-                                 std::size_t size) {
-  std::vector<Complex> x(size);
-  const double began_s = records.front().campaign_time_s + records.front().time_s.front();
+/// Common time grid of a campaign.
+struct Grid {
+  double began_s = 0, interval_s = 0;
+  std::size_t size = 0;
+};
+
+/// Returns a series of all records on the common time grid. A sample between two grid points is divided
+/// between both points; the nearer point gets the larger part. The accuracy is sufficient for a start value.
+/// @param series  one vector per record; NaN for samples without a value.
+std::vector<Complex> on_grid(const Grid& grid, const std::vector<Record>& records,
+                             const std::vector<std::vector<double>>& series) {
+  std::vector<Complex> x(grid.size);
   for (std::size_t k = 0; k < records.size(); ++k) {
     for (std::size_t i = 0; i < records[k].size(); ++i) {
-      if (std::isnan(residual_mm[k][i])) continue;
-      const double place = (records[k].campaign_time_s + records[k].time_s[i] - began_s) / interval_s;
+      if (std::isnan(series[k][i])) continue;
+      const double place =
+          (records[k].campaign_time_s + records[k].time_s[i] - grid.began_s) / grid.interval_s;
       const auto below = static_cast<std::size_t>(std::max(0.0, place));
       const double share = place - static_cast<double>(below);
-      if (below + 1 >= size) continue;
-      x[below] += (1 - share) * residual_mm[k][i];
-      x[below + 1] += share * residual_mm[k][i];
+      if (below + 1 >= grid.size) continue;
+      x[below] += (1 - share) * series[k][i];
+      x[below + 1] += share * series[k][i];
     }
   }
   return x;
+}
+
+/// Returns the spectrum of a series up to the given number of bins.
+std::vector<Complex> spectrum_of(std::vector<Complex> x, std::size_t bins) {
+  std::vector<Complex> transformed;
+  Eigen::FFT<double>().fwd(transformed, x);
+  transformed.resize(bins);
+  return transformed;
+}
+
+std::vector<double> power_of(const std::vector<Complex>& spectrum) {
+  std::vector<double> power;
+  for (const Complex& each : spectrum) power.push_back(std::norm(each));
+  return power;
+}
+
+/// Returns the drives of all records minus their mean.
+std::vector<std::vector<double>> drives_of(const std::vector<Record>& records) {
+  std::vector<std::vector<double>> drives;
+  double sum = 0, count = 0;
+  for (const Record& record : records) {
+    drives.push_back(record.drive_kpa);
+    sum = std::accumulate(record.drive_kpa.begin(), record.drive_kpa.end(), sum);
+    count += static_cast<double>(record.size());
+  }
+  for (std::vector<double>& drive : drives) {
+    for (double& kpa : drive) kpa -= sum / std::max(1.0, count);
+  }
+  return drives;
+}
+
+/// Returns the ratio of the power in a bin to the median power of its neighbourhood.
+double ratio_at(const std::vector<double>& power, std::size_t bin) {
+  const std::size_t first = bin > around ? bin - around : 1;
+  const std::size_t last = std::min(power.size(), bin + around);
+  std::vector<double> near(power.begin() + static_cast<long>(first), power.begin() + static_cast<long>(last));
+  return power[bin] / (median_of(std::span(near)) + 1e-300);
+}
+
+/// Returns true if the drive has a line at this frequency whose ratio is at least half of `ratio`. The
+/// residual may then be a response to the drive.
+bool is_in_drive(const std::vector<double>& drive_power, std::size_t bin, double ratio) {
+  for (std::size_t b = bin - resolution; b <= std::min(bin + resolution, drive_power.size() - 1); ++b) {
+    if (ratio_at(drive_power, b) >= limits::majority_share * ratio) return true;
+  }
+  return false;
+}
+
+/// Returns true if the power in a bin is at most the power that leaks into it from one of these lines. In the
+/// spectrum of a record, the power beside a line is at most 1/(pi d)^2 of its power at the distance of d
+/// frequency resolutions. The gaps between records increase it, so a factor of 4 is permitted.
+bool is_leakage(const std::vector<double>& power, std::size_t bin, const std::vector<std::size_t>& lines) {
+  return std::any_of(lines.begin(), lines.end(), [&](std::size_t line) {
+    const double d = (static_cast<double>(bin) - static_cast<double>(line)) / resolution;
+    return power[bin] <= 4 * power[line] / square(std::numbers::pi * d);
+  });
 }
 
 /// Returns two numbers for each local maximum of the spectrum: the ratio of its power to the median power of
@@ -48,13 +114,8 @@ std::vector<Complex> on_one_grid(const std::vector<Record>& records,
 /// no large ratio, because it increases the power of its neighbourhood too.
 std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& power, std::size_t lowest) {
   std::vector<std::pair<double, std::size_t>> peaks;
-  std::vector<double> near;
-  for (std::size_t b = std::max<std::size_t>(2, lowest); b + 1 < power.size(); ++b) {
-    if (power[b] < power[b - 1] || power[b] < power[b + 1]) continue;
-    const std::size_t first = b > around ? b - around : 1;
-    const std::size_t last = std::min(power.size(), b + around);
-    near.assign(power.begin() + static_cast<long>(first), power.begin() + static_cast<long>(last));
-    peaks.emplace_back(power[b] / (median_of(std::span(near)) + 1e-300), b);
+  for (std::size_t b = std::max(resolution, lowest); b + 1 < power.size(); ++b) {
+    if (power[b] >= power[b - 1] && power[b] >= power[b + 1]) peaks.emplace_back(ratio_at(power, b), b);
   }
   std::sort(peaks.rbegin(), peaks.rend());
   return peaks;
@@ -73,28 +134,32 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                             records.front().campaign_time_s - records.front().time_s.front();
   // The transform is twice as long as the campaign. The frequency grid is therefore finer than the frequency
   // resolution of the campaign.
-  const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(campaign_s / interval_s) + 4);
-  std::vector<Complex> x = on_one_grid(records, residual_mm, interval_s, size);
-  std::vector<Complex> transformed;
-  Eigen::FFT<double>().fwd(transformed, x);
-  const double step_hz = 1 / (interval_s * static_cast<double>(size));
+  const Grid grid{records.front().campaign_time_s + records.front().time_s.front(), interval_s,
+                  std::bit_ceil(resolution * static_cast<std::size_t>(campaign_s / interval_s) + 4)};
+  const double step_hz = 1 / (interval_s * static_cast<double>(grid.size));
   const double highest_hz = std::min(0.45 / interval_s, highest_looked_at_hz);
   const double lowest_hz = slowest_oscillation_hz(length_s);
-  std::vector<double> power(std::min(size / 2, static_cast<std::size_t>(highest_hz / step_hz)));
-  for (std::size_t b = 0; b < power.size(); ++b) power[b] = std::norm(transformed[b]);
+  const std::size_t bins = std::min(grid.size / 2, static_cast<std::size_t>(highest_hz / step_hz));
+  const std::vector<Complex> transformed = spectrum_of(on_grid(grid, records, residual_mm), bins);
+  const std::vector<double> drive_power =
+      power_of(spectrum_of(on_grid(grid, records, drives_of(records)), bins));
+  const std::vector<double> power = power_of(transformed);
   const auto peaks = peaks_of(power, static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
   double readings = 0;
   for (const auto& r : residual_mm) {
     for (const double value : r) readings += std::isnan(value) ? 0 : 1;
   }
-  const double began_s = records.front().campaign_time_s + records.front().time_s.front();
   std::vector<Line> lines;
-  for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
-    const double frequency_hz = step_hz * static_cast<double>(peaks[i].second);
+  std::vector<std::size_t> of_drive;
+  for (const auto& [ratio, bin] : peaks) {
+    if (lines.size() == count) break;
+    if (is_in_drive(drive_power, bin, ratio)) of_drive.push_back(bin);
+    if (is_leakage(power, bin, of_drive)) continue;
+    const double frequency_hz = step_hz * static_cast<double>(bin);
     // The phase is corrected for different time origins. The transform begins at the first sample, and the
     // oscillation is defined from the start of the campaign.
-    const Complex amplitude = 2 / readings * transformed[peaks[i].second] *
-                              std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
+    const Complex amplitude = 2 / readings * transformed[bin] *
+                              std::polar(1.0, -2 * std::numbers::pi * frequency_hz * grid.began_s);
     lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});
   }
   return lines;

@@ -29,7 +29,8 @@ inline constexpr std::size_t looked_at_lines = 3;
 
 /// Returns the `count` most significant lines in the spectrum of the residual of the whole campaign, the most
 /// significant first. The significance of a line is the ratio of its power to the median power of the
-/// neighbouring frequencies.
+/// neighbouring frequencies. A line is omitted if the drive has a line at the same frequency that is at least
+/// half as significant, because the residual may then be a response to the drive.
 /// @param residual_mm  one vector per record, as long as the record; NaN for samples without a reading.
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                                const std::vector<std::vector<double>>& residual_mm,

@@ -1,5 +1,6 @@
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -17,8 +18,8 @@ struct Campaign {
 };
 
 /// Returns two records of 60 s with an oscillation and noise. The phase of the oscillation is continuous from
-/// the first record to the second one.
-Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
+/// the first record to the second one. The drive oscillates with another frequency.
+Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s, double drive_hz = 0.45) {
   Campaign c;
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> off(-jitter_s, jitter_s);
@@ -29,6 +30,7 @@ Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
     for (int i = 0; i < 6000; ++i) {
       record.time_s.push_back(0.01 * i + (jitter_s > 0 && i > 0 ? off(random) : 0));
       const double t = record.campaign_time_s + record.time_s.back();
+      record.drive_kpa.push_back(30 - 30 * std::cos(2 * std::numbers::pi * drive_hz * t));
       residual.push_back(amplitude_mm * std::sin(2 * std::numbers::pi * frequency_hz * t + 0.7) +
                          0.04 * normal_at(9, std::uint64_t{6000} * static_cast<std::uint64_t>(k) +
                                                  static_cast<std::uint64_t>(i)));
@@ -75,6 +77,20 @@ TEST(SpectrumPeaks, SlowZeroDriftIsNoOscillation) {
   const Campaign c = campaign(0.05, 2.0, 0);
   for (const Line& peak : spectrum_peaks(c.records, c.residual_mm, 3))
     EXPECT_GE(peak.frequency_hz, 0.2 - 1e-9);
+}
+
+TEST(SpectrumPeaks, ALineOfTheDriveIsNoIndependentOscillation) {
+  const auto is_found = [](double frequency_hz, double drive_hz) {
+    const Campaign c = campaign(frequency_hz, 0.2, 0, drive_hz);
+    const std::vector<Line> lines = spectrum_peaks(c.records, c.residual_mm, 3);
+    EXPECT_EQ(lines.size(), 3U);
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const Line& line) { return std::abs(line.frequency_hz - frequency_hz) < 0.03; });
+  };
+  for (const double drive_hz : {0.31, 1.27}) {
+    EXPECT_FALSE(is_found(drive_hz, drive_hz)) << drive_hz;
+    EXPECT_TRUE(is_found(1.1 * drive_hz, drive_hz)) << drive_hz;
+  }
 }
 
 }  // namespace
