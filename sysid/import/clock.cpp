@@ -7,6 +7,7 @@
 #include "base/statistics.h"
 #include "sysid/import/fingers.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/role_fit.h"
 
 namespace softgrip::sysid {
 namespace {

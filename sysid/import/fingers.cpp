@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "sysid/import/proposal.h"
+#include "sysid/import/role_fit.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -10,6 +10,7 @@
 #include "base/statistics.h"
 #include "document/problem.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/role_fit.h"
 #include "sysid/import/units.h"
 
 namespace softgrip::sysid {

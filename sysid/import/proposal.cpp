@@ -1,116 +1,17 @@
 #include "sysid/import/proposal.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
-#include <initializer_list>
 #include <string_view>
 
 #include "base/numbers.h"
 #include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
+#include "sysid/import/role_fit.h"
 #include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
-namespace {
-
-/// Words that identify a role, in lower case. German words are included, because some data loggers write
-/// German column names.
-struct Words {
-  Role role;
-  /// A column whose name contains one of these words as a part has the role.
-  std::initializer_list<std::string_view> surely;
-};
-const std::array<Words, role_count>& words() {
-  static const std::array<Words, role_count> list{{
-      {Role::time,
-       {"time", "t", "zeit", "timestamp", "elapsed", "date", "datetime", "clock", "uhrzeit", "epoch",
-        "stamp"}},
-      {Role::command,
-       {"command", "cmd", "set", "setpoint", "desired", "demand", "target", "ref", "reference", "soll", "sp",
-        "pd", "input", "commanded", "sollwert", "valve", "ventil"}},
-      {Role::pressure, {"pressure", "press", "p", "druck", "pm", "prs", "regulator"}},
-      {Role::displacement,
-       {"displacement", "disp",     "x",         "y",          "position",   "pos",     "deflection",
-        "stroke",       "tip",      "bend",      "weg",        "laser",      "encoder", "enc",
-        "height",       "distance", "extension", "elongation", "travel",     "hub",     "angle",
-        "bending",      "theta",    "flexion",   "winkel",     "biegewinkel"}},
-      {Role::temperature, {"temperature", "temp", "temperatur"}},
-      {Role::supply, {"supply", "tank", "vordruck", "source", "versorgung", "reservoir"}},
-  }};
-  return list;
-}
-
-/// Splits a name into lower-case parts: "pSetpoint_kPa[1]" gives p, setpoint, kpa, 1.
-std::vector<std::string> parts_of(std::string_view name) {
-  std::vector<std::string> parts(1);
-  bool was_lower = false;
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalpha(byte) == 0 && byte < 0x80) {
-      if (!parts.back().empty()) parts.emplace_back();
-      was_lower = false;
-      continue;
-    }
-    if (std::isupper(byte) != 0 && was_lower) parts.emplace_back();
-    parts.back() += c;
-    was_lower = std::islower(byte) != 0;
-  }
-  for (std::string& part : parts) part = lower_case(part);
-  return parts;
-}
-
-}  // namespace
-
-bool names_role(std::string_view name, Role role) {
-  const std::vector<std::string> parts = parts_of(name);
-  const auto& surely = words()[static_cast<std::size_t>(role)].surely;
-  return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
-    return std::find(surely.begin(), surely.end(), part) != surely.end();
-  });
-}
-
-namespace {
-
-/// Returns the unit that a column states, whether it is a unit of time, pressure or another quantity.
-std::string open_unit(const TableColumn& column) {
-  return column.unit.empty() ? split_unit(column.name).unit : column.unit;
-}
-
-}  // namespace
-
-int fitness_for(const TableColumn& column, Role role) {
-  const RoleSpec& spec = spec_of(role);
-  const bool time = spec.role == Role::time;
-  // A column can have a role only if at most 10 % of its cells are unreadable. The import reports the
-  // unreadable cells.
-  if (column.is_part_of_time) return 0;
-  if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
-  const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
-  const std::string anywhere = open_unit(column);
-  const bool of_quantity = !unit.empty() && unit_named(unit, spec.quantity).has_value();
-  const std::optional<Unit> carried = unit_named(anywhere);
-  const std::string bare = split_unit(column.name, spec.quantity).name;
-  const bool named = names_role(bare, spec.role);
-  const bool angle = carried && carried->output == model::OutputUnit::deg;
-  // "temp_deg" is a temperature whose scale is unknown, not an angle.
-  const bool warmth = angle && names_role(split_unit(column.name).name, Role::temperature);
-  if (warmth) return role == Role::temperature ? 3 : 0;
-  const bool elsewhere = !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && carried;
-  if (elsewhere) return 0;
-  if (time && column.moments > 0) return 4;
-  // A column of commanded pressure or of supply pressure must not be used as the measured pressure.
-  const bool pressure = spec.role == Role::pressure;
-  if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
-  if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
-  // A column of a displacement in mm gets a higher score than a column of an angle.
-  if (named) return !of_quantity ? 3 : angle ? 4 : 5;
-  const bool by_unit_alone = pressure || spec.role == Role::displacement || time;
-  return !of_quantity || !by_unit_alone ? 0 : angle ? 1 : 2;
-}
-
 namespace {
 
 bool taken(const Mapping& mapping, const ForeignTable& table, std::size_t index) {

@@ -28,11 +28,6 @@ struct Proposal {
   std::vector<std::string> warnings;
 };
 
-/// Returns a score that states how well a column fits a role, from the column's name and unit. 0: the column
-/// cannot have the role.
-[[nodiscard]] int fitness_for(const TableColumn& column, Role role);
-/// Returns true if a part of the name is a word that identifies the role.
-[[nodiscard]] bool names_role(std::string_view name, Role role);
 /// Returns the unit of a column of times since 1970. The magnitude of the first value determines this unit.
 /// Returns "" for a column of other values.
 [[nodiscard]] std::string epoch_unit(const TableColumn& column);

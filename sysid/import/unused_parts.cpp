@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
-#include "sysid/import/proposal.h"
+#include "sysid/import/role_fit.h"
 
 namespace softgrip::sysid {
 namespace {

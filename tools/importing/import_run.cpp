@@ -17,6 +17,7 @@
 #include "sysid/import/conversion.h"
 #include "sysid/import/mapping.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/role_fit.h"
 #include "sysid/import/table_readers.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/plausibility_warnings.h"
