@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string_view>
 
 #include "base/numbers.h"
@@ -212,15 +213,34 @@ std::string unread_time(const ForeignTable& table) {
   return {};
 }
 
+/// Returns a text about the first column that could have one of the roles if its name did not state a derived
+/// value. Returns "" if there is no such column.
+std::string derived_column(const ForeignTable& table, std::initializer_list<Role> of_roles) {
+  for (const TableColumn& column : table.columns) {
+    const bool may_be = std::any_of(of_roles.begin(), of_roles.end(), [&](Role role) {
+      const Quantity quantity = spec_of(role).quantity;
+      const std::string unit = column.unit.empty() ? split_unit(column.name, quantity).unit : column.unit;
+      return names_role(column.name, role) || unit_named(unit, quantity).has_value();
+    });
+    if (may_be && names_derived_value(column.name))
+      return " ('" + document::shown(column.name, 40) +
+             "' is not proposed, because its name states an error, a difference, a rate or another derived "
+             "value)";
+  }
+  return {};
+}
+
 void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
   if (!proposal.questions.empty()) return;
   const Mapping& mapping = proposal.mapping;
   if (!mapping[Role::time].given() && !mapping.rate_hz)
     proposal.missing.emplace_back("a time: --time COLUMN, or --rate-hz R" + unread_time(table));
   if (!mapping[Role::command].given() && !mapping[Role::pressure].given())
-    proposal.missing.emplace_back("a pressure: --command COLUMN (commanded) or --pressure COLUMN (measured)");
+    proposal.missing.emplace_back("a pressure: --command COLUMN (commanded) or --pressure COLUMN (measured)" +
+                                  derived_column(table, {Role::command, Role::pressure}));
   if (!mapping[Role::displacement].given())
-    proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
+    proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN" +
+                                  derived_column(table, {Role::displacement}));
 }
 
 /// Returns the first, the middle and the last value of a column as text. For a column of dates or times of

@@ -40,6 +40,19 @@ const std::array<Words, role_count>& words() {
   return list;
 }
 
+/// Words for values that are derived from a quantity.
+constexpr std::array<std::string_view, 33> derived_words{
+    "error",           "err",          "fehler",      "deviation",  "abweichung",
+    "regelabweichung", "diff",         "differenz",   "difference", "minus",
+    "residual",        "residuals",    "resid",       "rate",       "dot",
+    "deriv",           "derivative",   "speed",       "velocity",   "vel",
+    "geschwindigkeit", "acceleration", "slope",       "gradient",   "std",
+    "stdev",           "stddev",       "sigma",       "variance",   "noise",
+    "rauschen",        "uncertainty",  "unsicherheit"};
+/// Words that state a derived value only at the end of a name: "p_dev" is a deviation, but "dev1_p" may be
+/// the pressure of a device.
+constexpr std::array<std::string_view, 3> derived_endings{"dev", "var", "acc"};
+
 /// Splits a name into lower-case parts: "pSetpoint_kPa[1]" gives p, setpoint, kpa, 1.
 std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts(1);
@@ -60,6 +73,17 @@ std::vector<std::string> parts_of(std::string_view name) {
 }
 
 }  // namespace
+
+bool names_derived_value(std::string_view name) {
+  std::vector<std::string> parts = parts_of(split_unit(name).name);
+  std::erase(parts, std::string());
+  const auto is_one_of = [](const auto& words, const std::string& part) {
+    return std::find(words.begin(), words.end(), part) != words.end();
+  };
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const std::string& part) { return is_one_of(derived_words, part); }) ||
+         (!parts.empty() && is_one_of(derived_endings, parts.back()));
+}
 
 bool names_role(std::string_view name, Role role) {
   const std::vector<std::string> parts = parts_of(name);
@@ -85,6 +109,7 @@ int fitness_for(const TableColumn& column, Role role) {
   // unreadable cells.
   if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
+  if (names_derived_value(column.name)) return 0;
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
   const std::string anywhere = open_unit(column);
   const bool of_quantity = !unit.empty() && unit_named(unit, spec.quantity).has_value();

@@ -12,6 +12,9 @@ namespace softgrip::sysid {
 /// Returns a score that states how well a column fits a role, from the column's name and unit. 0: the column
 /// cannot have the role.
 [[nodiscard]] int fitness_for(const TableColumn& column, Role role);
+/// Returns true if the name states that the values are derived from a quantity, for example an error, a
+/// difference, a rate or a standard deviation: "p_error_kpa". The import never proposes such a column.
+[[nodiscard]] bool names_derived_value(std::string_view name);
 /// Returns true if a part of the name is a word that identifies the role.
 [[nodiscard]] bool names_role(std::string_view name, Role role);
 

@@ -233,6 +233,18 @@ TEST(Propose, AssignsRolesByNameAndUnit) {
             "C)' --supply supply_bar");
 }
 
+TEST(Propose, AnErrorIsNoMeasuredPressure) {
+  const auto row = [](int i, double p, double y) { return plain(i, p, y) + "," + shortest(0.01 * p); };
+  const Proposal both = propose(table_of(text_of("t_s,p_cmd_kpa,tip_mm,p_error_kpa", row)), {}, true);
+  EXPECT_EQ(options_of(both.mapping), "--time t_s --command p_cmd_kpa --displacement tip_mm");
+  const Proposal alone = propose(table_of(text_of("t_s,p_error_kpa,tip_mm", plain)), {}, true);
+  ASSERT_EQ(alone.missing.size(), 1U);
+  EXPECT_NE(alone.missing[0].find("('p_error_kpa' is not proposed"), std::string::npos) << alone.missing[0];
+  Mapping given;
+  given[Role::pressure].columns = {"p_error_kpa"};
+  EXPECT_TRUE(propose(table_of(text_of("t_s,p_error_kpa,tip_mm", plain)), given, true).missing.empty());
+}
+
 TEST(Propose, KeepsGivenAssignments) {
   const ForeignTable table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
   Mapping given;
