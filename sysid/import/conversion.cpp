@@ -25,6 +25,7 @@ class Converter {
     sources_ = resolve_sources(table_, mapping_, problems_);
     if (problems_.size() != before) return std::nullopt;
     remarks_.account = table_.account;
+    remarks_.warnings = table_.warnings;
     ForeignSamples samples = samples_of_table();
     if (problems_.size() != before) return std::nullopt;
     if (const auto problem = order_in_time(mapping_, samples, remarks_)) {

@@ -7,6 +7,7 @@
 #include "sysid/import/fingers.h"
 #include "sysid/import/text_dialect.h"
 #include "sysid/import/units.h"
+#include "sysid/logs/csv_text.h"
 #include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {
@@ -24,8 +25,15 @@ std::string name_of_separator(char separator) {
 /// Reads the rows of numbers into columns.
 class RowReader {
  public:
-  RowReader(const Dialect& dialect, const TableOptions& options, ForeignTable& table, LogReporter& report)
-      : dialect_(dialect), options_(options), table_(table), report_(report), moments_(dialect.width) {
+  /// @param text  the whole text, of which the rows are parts.
+  RowReader(std::string_view text, const Dialect& dialect, const TableOptions& options, ForeignTable& table,
+            LogReporter& report)
+      : text_(text),
+        dialect_(dialect),
+        options_(options),
+        table_(table),
+        report_(report),
+        moments_(dialect.width) {
     table_.missing_cells.resize(options.missing.size());
     table_.columns.resize(dialect.width);
     for (std::size_t i = 0; i < dialect.width; ++i) {
@@ -44,6 +52,10 @@ class RowReader {
     const bool closed = split_line(line.text, dialect_.separator, cells_);
     drop_extra_cell();
     if (cells_.size() != dialect_.width || !closed) return leave_out(line, is_last, closed);
+    cut_off_.add(line.text, cells_.back().text);
+    if (is_last && cut_off_.may_be_cut_off(text_))
+      table_.warnings.push_back("line " + std::to_string(line.number) + ": " +
+                                cut_off_sentence(cells_.back().text));
     if (!belongs()) return table_.account.leave_out(LeftOut::other_channel);
     for (std::size_t i = 0; i < dialect_.width; ++i) read_cell(i, line);
     table_.line.push_back(line.number);
@@ -84,7 +96,8 @@ class RowReader {
   void leave_out(const TextLine& line, bool is_last, bool closed) {
     if (is_last && (cells_.size() < dialect_.width || !closed)) {
       table_.account.leave_out(LeftOut::cut_off_line);
-      table_.notes.emplace_back("the last line is cut off and left out");
+      table_.warnings.push_back("line " + std::to_string(line.number) +
+                                ": the last line is cut off and left out");
     } else if (options_.skip_bad_lines) {
       table_.account.leave_out(LeftOut::bad_line);
       skipped_.push_back(line.number);
@@ -160,6 +173,7 @@ class RowReader {
     }
   };
 
+  std::string_view text_;
   const Dialect& dialect_;
   const TableOptions& options_;
   ForeignTable& table_;
@@ -169,6 +183,7 @@ class RowReader {
   std::size_t channel_ = dialect_.width;
   /// True: the column that identifies the finger has the same name as in a log.
   bool is_log_channel_ = false;
+  CutOffDetector cut_off_;
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;
@@ -196,7 +211,7 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
   table.is_text = table.has_separators = true;
   table.notes = text->notes;
   LogReporter report(file, problems);
-  RowReader rows(*dialect, options, table, report);
+  RowReader rows(text->text, *dialect, options, table, report);
   for (std::size_t i = dialect->first_row; i < lines.content.size(); ++i)
     rows.read(lines.content[i], i + 1 == lines.content.size());
   rows.finish();

@@ -1,6 +1,6 @@
 #include "sysid/logs/csv_text.h"
 
-#include <cstddef>
+#include <algorithm>
 
 namespace softgrip::sysid {
 
@@ -29,6 +29,23 @@ bool split(std::string_view line, std::vector<Cell>& cells, char separator) {
     }
   }
   return !quoted;
+}
+
+void CutOffDetector::add(std::string_view line, std::string_view last_cell) {
+  if (rows_++ > 0) shortest_before_ = std::min(shortest_before_, last_length_);
+  last_line_ = line;
+  last_length_ = unquoted(last_cell).size();
+}
+
+bool CutOffDetector::may_be_cut_off(std::string_view text) const {
+  const bool without_line_break = last_line_.data() + last_line_.size() == text.data() + text.size();
+  return rows_ > 2 && without_line_break && last_length_ < shortest_before_;
+}
+
+std::string cut_off_sentence(std::string_view last_cell) {
+  return "the last row may be cut off: it does not end with a line break, and its last cell '" +
+         std::string(unquoted(last_cell)) +
+         "' is shorter than the last cells of all other rows. Check this value, or delete the row";
 }
 
 std::string_view unquoted(std::string_view text) {

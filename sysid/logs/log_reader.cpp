@@ -45,9 +45,10 @@ double read_cell(const KnownColumn& known, std::string_view name, const Cell& ce
 /// Reads the rows of one channel into a log.
 class RowReader {
  public:
-  RowReader(const LogHeader& header, const LogOptions& options, Log& log, LogSource& source,
-            LogReporter& report)
-      : header_(header), options_(options), log_(log), source_(source), report_(report) {
+  /// @param text  the whole text, of which the rows are parts.
+  RowReader(std::string_view text, const LogHeader& header, const LogOptions& options, Log& log,
+            LogSource& source, LogReporter& report)
+      : text_(text), header_(header), options_(options), log_(log), source_(source), report_(report) {
     for (std::size_t i = 0; i < header.names.size(); ++i) {
       const bool is_known =
           std::find(header.index.begin(), header.index.end(), static_cast<int>(i)) != header.index.end() ||
@@ -81,6 +82,9 @@ class RowReader {
       report_.add("row", {line_number, 1}, line, "a quotation mark is not closed");
       return;
     }
+    cut_off_.add(line, cells_.back().text);
+    if (is_last && cut_off_.may_be_cut_off(text_))
+      log_.notes.push_back({line_number, cut_off_sentence(cells_.back().text)});
     if (!belongs()) return;
     for (std::size_t k = 0; k < known_columns.size(); ++k) {
       if (header_.index[k] < 0) continue;
@@ -116,11 +120,13 @@ class RowReader {
     return options_.channel.empty() ? channel == channels_.front() : channel == options_.channel;
   }
 
+  std::string_view text_;
   const LogHeader& header_;
   const LogOptions& options_;
   Log& log_;
   LogSource& source_;
   LogReporter& report_;
+  CutOffDetector cut_off_;
   std::vector<Cell> cells_;
   std::vector<std::size_t> other_index_;
   std::vector<std::string> channels_;
@@ -192,7 +198,7 @@ std::optional<Log> parse_log(const std::string& file, std::string_view text, doc
                    header.column[column_command],
                    header.column[column_displacement]};
   log.output_unit = header.reading.unit;
-  RowReader rows(header, options, log, source, report);
+  RowReader rows(text, header, options, log, source, report);
   for (std::size_t i = 1; i < lines.size(); ++i) {
     rows.read(lines[i], static_cast<int>(i) + 1, i + 1 == lines.size());
   }

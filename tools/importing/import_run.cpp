@@ -63,6 +63,7 @@ bool take_as_it_is(Job& job) {
   job.result.account = job.table.account;
   job.result.account.used = job.result.log.size();
   job.result.notes.emplace_back("this file is already a log: copied unchanged");
+  job.warnings = job.table.warnings;
   job.is_log = true;
   return true;
 }

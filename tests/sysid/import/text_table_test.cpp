@@ -90,9 +90,21 @@ TEST(TextTable, TimeOfDayContinuesPastMidnight) {
 }
 
 TEST(TextTable, OnlyTheLastLineMayBeTruncated) {
-  EXPECT_EQ(table_of("t,x\n0,1\n1,2\n2").notes.size(), 1U);
+  EXPECT_EQ(table_of("t,x\n0,1\n1,2\n2").warnings,
+            std::vector<std::string>{"line 4: the last line is cut off and left out"});
   EXPECT_NE(refusal("t,x\n0,1\n1\n2,3\n3,4\n").find("t.csv:3:1: 1 cells, but the rows above have 2"),
             std::string::npos);
+}
+
+TEST(TextTable, AShortLastCellWithoutALineBreakIsAWarning) {
+  const std::string rows = "t,x\n0,10.5\n1,12.5\n2,";
+  const auto warnings = table_of(rows + "1").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].find("line 4: the last row may be cut off"), 0U) << warnings[0];
+  EXPECT_EQ(table_of(rows).warnings.size(), 1U);
+  EXPECT_EQ(table_of(rows + "1").columns[1].values.back(), 1);
+  for (const char* whole : {"1\n", "1\r\n", "13.5", "1\n# end"})
+    EXPECT_TRUE(table_of(rows + whole).warnings.empty()) << whole;
 }
 
 TEST(TextTable, RowsAreSelectedByChannel) {

@@ -416,6 +416,25 @@ TEST(Log, ClippingMayBeAllowed) {
   EXPECT_EQ(read->notes.front().line, 34);
 }
 
+TEST(Log, AShortLastCellWithoutALineBreakIsNoted) {
+  std::string text = "time_s,displacement_mm,pressure_command_kpa\n";
+  for (int i = 0; i < 100; ++i)
+    text += shortest(0.01 * i) + "," + shortest(0.25 * (i < 50 ? i : 99 - i) + 0.5 * (i % 2)) + "," +
+            shortest(100.25 + (i < 50 ? i : 99 - i)) + "\n";
+  const auto notes_of = [](const std::string& of) {
+    Problems problems;
+    const auto read = parse_log("cut.csv", of, problems);
+    EXPECT_TRUE(read) << problems.format();
+    return read ? read->notes : std::vector<LogNote>{};
+  };
+  EXPECT_TRUE(notes_of(text).empty());
+  EXPECT_TRUE(notes_of(text.substr(0, text.size() - 1)).empty());
+  const auto notes = notes_of(text.substr(0, text.size() - 3));
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes.front().line, 101);
+  EXPECT_EQ(notes.front().text.find("the last row may be cut off"), 0U) << notes.front().text;
+}
+
 TEST(Log, ASliceStartsAtZero) {
   const Log part = slice(good_log(), 50, 80);
   EXPECT_EQ(part.size(), 30U);
