@@ -130,6 +130,8 @@ class Import(bench.BenchTest):
                           ("--zero", "pressure=last"), ("--separator", "dots"), ("--rate-hz", "nan"),
                           ("--time", "1", "--rate-hz", "100")):
             self.imported(path, "--out", "log.csv", "--yes", *arguments, expect=2)
+        done = self.imported(path, "--out", "log.csv", "--yes", "--scale", "command=2", "displacement=3", expect=2)
+        self.assertIn("repeat the option for each further value: --scale displacement=3", done.stderr)
         self.imported("absent.csv", "--out", "log.csv", expect=4)
         self.imported(path, "--map", "absent.yaml", "--out", "log.csv", expect=4)
         done = self.imported(path, "--out", path, "--yes", expect=2)

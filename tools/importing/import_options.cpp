@@ -67,15 +67,52 @@ std::string log_name(const std::string& file) {
   return (fs::is_directory(file, error) ? path.filename() : path.stem()).string() + ".csv";
 }
 
+/// Returns true if the word has the form ROLE=VALUE.
+bool is_setting(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  return equals != std::string::npos &&
+         std::any_of(sysid::roles.begin(), sysid::roles.end(),
+                     [&](const sysid::RoleSpec& spec) { return spec.word == word.substr(0, equals); });
+}
+
+/// Returns the option with values of the form ROLE=VALUE that is given. If several such options are given, or
+/// none, returns "--scale" as an example.
+std::string option_of(const ImportOptions& options) {
+  std::vector<std::string> given;
+  if (!options.units.empty()) given.emplace_back("--unit");
+  if (!options.scales.empty()) given.emplace_back("--scale");
+  if (!options.zeros.empty()) given.emplace_back("--zero");
+  return given.size() == 1 ? given.front() : "--scale";
+}
+
 }  // namespace
+
+tl::expected<void, std::string> check_files(const ImportOptions& options) {
+  std::error_code error;
+  for (const std::string& file : options.files) {
+    if (!is_setting(file) || fs::exists(file, error)) continue;
+    const std::string option = option_of(options);
+    return tl::unexpected("'" + file + "' is not a file. An option such as " + option +
+                          " has one value, so repeat the option for each further value: " + option + " " +
+                          file);
+  }
+  return {};
+}
 
 tl::expected<std::vector<std::string>, std::string> import_targets(const std::vector<std::string>& files,
                                                                    const std::string& out) {
   std::error_code error;
   const bool folder = out.ends_with('/') || fs::is_directory(out, error);
-  if (files.size() > 1 && !folder)
+  if (files.size() > 1 && !folder) {
+    const auto missing = std::find_if(files.begin(), files.end(),
+                                      [&](const std::string& file) { return !fs::exists(file, error); });
+    if (missing != files.end())
+      return tl::unexpected(
+          "there is no file '" + *missing + "'. If '" + *missing +
+          "' is a further value of an option such as --command, repeat the option for this value");
     return tl::unexpected("--out " + out + " must be a folder for " + std::to_string(files.size()) +
                           " files, so the name of the folder must end with a '/'");
+  }
   std::vector<std::string> targets;
   std::set<std::string> seen;
   for (const std::string& file : files) {

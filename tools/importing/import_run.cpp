@@ -275,6 +275,7 @@ std::optional<ExitCode> refuse_own_inputs(const ImportOptions& options,
 }  // namespace
 
 ExitCode run_import(const ImportOptions& options) {
+  if (const auto checked = check_files(options); !checked) return fail(ExitCode::usage, checked.error());
   const auto targets = import_targets(options.files, options.out);
   if (!targets) return fail(ExitCode::usage, targets.error());
   if (const auto code = refuse_own_inputs(options, *targets)) return *code;

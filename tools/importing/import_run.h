@@ -39,6 +39,10 @@ struct ImportOptions {
 /// confirm this mapping on a terminal. If there is no terminal, the exit code is 2.
 ExitCode run_import(const ImportOptions& options);
 
+/// Checks that no input file is a value such as "displacement=3", which belongs to an option. On failure,
+/// returns a sentence that describes the error.
+[[nodiscard]] tl::expected<void, std::string> check_files(const ImportOptions& options);
+
 /// Returns the output paths of the logs. If there is one file and `out` is not a folder, the path is `out`.
 /// Otherwise each log gets a path in the folder `out`. On failure, returns a sentence that describes the
 /// error.

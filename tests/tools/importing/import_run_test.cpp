@@ -59,6 +59,28 @@ TEST(ImportOptions, TheStartIsBeforeTheEnd) {
             "the start (from-s, 20 s) is after the end (to-s, 10 s); the start must be before the end");
 }
 
+TEST(ImportOptions, AFurtherValueOfAnOptionIsNoFile) {
+  ImportOptions options;
+  options.files = {"displacement=3", "day.csv"};
+  options.scales = {"command=2"};
+  const auto checked = check_files(options);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(
+      checked.error(),
+      "'displacement=3' is not a file. An option such as --scale has one value, so repeat the option for "
+      "each further value: --scale displacement=3");
+  options.files = {"day=3.csv"};
+  EXPECT_TRUE(check_files(options));
+}
+
+TEST(ImportTargets, AMissingFileMayBeAValueOfAnOption) {
+  const auto targets = import_targets({"absent_column", "/dev/null"}, "log.csv");
+  ASSERT_FALSE(targets);
+  EXPECT_EQ(targets.error(),
+            "there is no file 'absent_column'. If 'absent_column' is a further value of an option such as "
+            "--command, repeat the option for this value");
+}
+
 TEST(ImportTargets, OneInputBecomesAFileAndSeveralBecomeAFolder) {
   EXPECT_EQ(*import_targets({"a/day.csv"}, "log.csv"), std::vector<std::string>{"log.csv"});
   EXPECT_EQ(*import_targets({"a/day.csv.gz", "b/run.mat"}, "logs/"),
