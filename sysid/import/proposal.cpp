@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
+#include "sysid/import/motion.h"
 #include "sysid/import/role_fit.h"
 #include "sysid/logs/sensor_codes.h"
 
@@ -179,23 +180,55 @@ void choose_codes(const ForeignTable& table, Proposal& proposal) {
   }
 }
 
+/// Selects the displacement from the columns that fit this role. If a better-fitting column does not move,
+/// the first of the best-fitting columns that move is selected. A warning states each choice among several
+/// columns.
+/// @param fits  score of each column for the role; 0: the column cannot have the role.
+std::size_t choose_displacement(const ForeignTable& table, const std::vector<int>& fits, std::size_t first,
+                                Proposal& proposal) {
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i] > 0) candidates.push_back(i);
+  }
+  const std::vector<std::size_t> moving = moving_columns(table, candidates);
+  if (candidates.size() < 2 || moving.empty()) return first;
+  const auto chosen = *std::max_element(moving.begin(), moving.end(),
+                                        [&](std::size_t a, std::size_t b) { return fits[a] < fits[b]; });
+  std::vector<std::string> also;
+  std::vector<std::string> resting;
+  for (const std::size_t index : candidates) {
+    const bool moves = std::find(moving.begin(), moving.end(), index) != moving.end();
+    if (moves && index != chosen && fits[index] == fits[chosen]) also.push_back(word_of(table, index));
+    if (!moves && fits[index] >= fits[chosen]) resting.push_back(word_of(table, index));
+  }
+  const std::string name =
+      "'" + document::shown(word_of(table, chosen), 40) + "' is proposed as the displacement";
+  if (!resting.empty())
+    proposal.warnings.push_back(name + ", because its values move and the values of " + quoted(resting) +
+                                " do not. To use another column, state it with --displacement");
+  if (!also.empty())
+    proposal.warnings.push_back(
+        name + (also.size() == 1 ? ", but " : ", but each of ") + quoted(also) +
+        " fits and moves too. The first of these columns is proposed. State the correct column with "
+        "--displacement");
+  return chosen;
+}
+
 void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice& choice, Proposal& proposal) {
-  int best = 0;
-  std::size_t chosen = table.columns.size();
+  std::vector<int> fits;
   const std::vector<std::size_t> times = time_columns(table);
   const auto is_time = [&](std::size_t i) {
     return spec.role != Role::time && names_role(table.columns[i].name, Role::time) &&
            std::find(times.begin(), times.end(), i) != times.end();
   };
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const int fit = taken(proposal.mapping, table, i) || !choice.offers(table.columns[i]) || is_time(i)
-                        ? 0
-                        : fitness_for(table.columns[i], spec.role);
-    if (fit <= best) continue;
-    best = fit;
-    chosen = i;
+    const bool out = taken(proposal.mapping, table, i) || !choice.offers(table.columns[i]) || is_time(i);
+    fits.push_back(out ? 0 : fitness_for(table.columns[i], spec.role));
   }
-  if (chosen == table.columns.size()) return;
+  const auto best = std::max_element(fits.begin(), fits.end());
+  if (best == fits.end() || *best == 0) return;
+  auto chosen = static_cast<std::size_t>(best - fits.begin());
+  if (spec.role == Role::displacement) chosen = choose_displacement(table, fits, chosen, proposal);
   ColumnMapping& column = proposal.mapping[spec.role];
   column.columns = {word_of(table, chosen)};
   proposal.guessed.push_back(spec.role);

@@ -70,7 +70,7 @@ struct ForeignTable {
       channels;  ///< names of the fingers in the column `channel_column`, in the order of their first rows
   /// Name of the column that identifies the finger of each row; empty: no column identifies the finger.
   std::string channel_column;
-  std::vector<std::string> notes;  ///< notes about contents of the file that were skipped
+  std::vector<std::string> notes;     ///< notes about contents of the file that were skipped
   std::vector<std::string> warnings;  ///< warnings about contents that are damaged, or that may be damaged
   /// Row counts. For a text file, all rows are counted. For a binary file, only the left-out rows are
   /// counted.

@@ -245,6 +245,31 @@ TEST(Propose, AnErrorIsNoMeasuredPressure) {
   EXPECT_TRUE(propose(table_of(text_of("t_s,p_error_kpa,tip_mm", plain)), given, true).missing.empty());
 }
 
+TEST(Propose, TheDisplacementThatMovesIsPreferred) {
+  const auto beside = [](const std::string& header, double factor) {
+    return propose(table_of(text_of(header,
+                                    [&](int i, double p, double y) {
+                                      return shortest(0.01 * i) + "," + shortest(p) + "," +
+                                             shortest(3 + factor * y) + "," + shortest(y);
+                                    })),
+                   {}, true);
+  };
+  const Proposal still = beside("t_s,p_cmd_kpa,x_mm,y_mm", 0);
+  EXPECT_EQ(still.mapping[Role::displacement].columns, std::vector<std::string>{"y_mm"});
+  ASSERT_EQ(still.warnings.size(), 1U);
+  EXPECT_NE(still.warnings[0].find("the values of 'x_mm' do not"), std::string::npos) << still.warnings[0];
+  const Proposal both = beside("t_s,p_cmd_kpa,x_mm,y_mm", 0.5);
+  EXPECT_EQ(both.mapping[Role::displacement].columns, std::vector<std::string>{"x_mm"});
+  ASSERT_EQ(both.warnings.size(), 1U);
+  EXPECT_NE(both.warnings[0].find("'y_mm' fits and moves too"), std::string::npos) << both.warnings[0];
+  const Proposal angle = beside("t_s,p_cmd_kpa,tip_mm,bend_deg", 0);
+  EXPECT_EQ(angle.mapping[Role::displacement].columns, std::vector<std::string>{"bend_deg"});
+  EXPECT_EQ(angle.warnings.size(), 1U);
+  const Proposal ordinary = beside("t_s,p_cmd_kpa,tip_mm,bend_deg", 0.5);
+  EXPECT_EQ(ordinary.mapping[Role::displacement].columns, std::vector<std::string>{"tip_mm"});
+  EXPECT_TRUE(ordinary.warnings.empty());
+}
+
 TEST(Propose, KeepsGivenAssignments) {
   const ForeignTable table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
   Mapping given;
