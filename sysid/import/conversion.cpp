@@ -9,6 +9,7 @@
 #include "sysid/import/clock.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/role_sources.h"
+#include "sysid/import/row_groups.h"
 #include "sysid/import/samples.h"
 #include "sysid/logs/log_columns.h"
 
@@ -28,7 +29,7 @@ class Converter {
     remarks_.warnings = table_.warnings;
     ForeignSamples samples = samples_of_table();
     if (problems_.size() != before) return std::nullopt;
-    if (const auto problem = order_in_time(mapping_, samples, remarks_)) {
+    if (const auto problem = order_in_time(mapping_, samples, remarks_, groups_in(samples))) {
       refuse_row(*problem);
       return std::nullopt;
     }
@@ -127,6 +128,17 @@ class Converter {
     for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i)
       time.push_back(static_cast<double>(rows[i]) / *mapping_.rate_hz);
     return samples;
+  }
+
+  /// Returns about_groups(), if a column separates the rows of several runs or devices and the times repeat
+  /// or decrease. If only the readings show the groups, adds a warning and returns "".
+  std::string groups_in(const ForeignSamples& samples) {
+    if (mapping_[Role::time].columns.size() != 1) return {};
+    const auto groups = row_groups(table_, sources_, samples);
+    if (!groups) return {};
+    if (groups->by_times) return about_groups(table_, *groups);
+    remarks_.warnings.push_back(about_groups(table_, *groups));
+    return {};
   }
 
   /// Corrects the overflows of a clock and adds a note about this correction.

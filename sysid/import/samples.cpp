@@ -119,7 +119,7 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
 }  // namespace
 
 std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
-                                           ImportRemarks& remarks) {
+                                           ImportRemarks& remarks, const std::string& groups) {
   std::vector<std::size_t> timed;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (std::isfinite(samples[Role::time][i])) timed.push_back(i);
@@ -133,11 +133,13 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
   const std::vector<double>& time_s = samples[Role::time];
   for (std::size_t i = 1; i < samples.size(); ++i) {
     if (time_s[i] < time_s[i - 1])
-      return SampleProblem{samples.row[i],
-                           "the time goes back, from " + significant(time_s[i - 1], 7) + " s to " +
-                               significant(time_s[i], 7) + " s after the first sample",
-                           "if the file contains two runs, split the file here and import each run. If the "
-                           "clock was set during the recording, use --rate-hz R instead of --time"};
+      return SampleProblem{
+          samples.row[i],
+          "the time goes back, from " + significant(time_s[i - 1], 7) + " s to " + significant(time_s[i], 7) +
+              " s after the first sample",
+          !groups.empty() ? groups
+                          : "if the file contains two runs, split the file here and import each run. If the "
+                            "clock was set during the recording, use --rate-hz R instead of --time"};
   }
   std::vector<std::size_t> kept;
   std::size_t repeated = 0;
@@ -160,7 +162,10 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
   if (repeated > 0)
     remarks.notes.push_back(counted(repeated, "with the time of the previous sample (left out)"));
   if (static_cast<double>(repeated) > warned_share * static_cast<double>(samples.size()))
-    remarks.warnings.push_back(about_repeats(time_s, repeated));
+    remarks.warnings.push_back(groups.empty()
+                                   ? about_repeats(time_s, repeated)
+                                   : std::to_string(repeated) + " of " + std::to_string(time_s.size()) +
+                                         " rows have the time of the previous row: " + groups);
   keep(samples, kept);
   if (samples[Role::time].front() != 0) from_zero(samples[Role::time], remarks.notes);
   return std::nullopt;

@@ -45,8 +45,11 @@ struct ImportRemarks {
 /// outside the range from `from_s` to `to_s` of the mapping. Merges samples with the same time if no role has
 /// a value in more than one of them; otherwise keeps only the first of them. A time that decreases is a
 /// problem.
+/// @param groups  about_groups() (row_groups.h), if a column separates the rows of several runs or devices,
+/// otherwise empty. Problems and warnings about decreasing and repeated times then contain this text.
 [[nodiscard]] std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
-                                                         ImportRemarks& remarks);
+                                                         ImportRemarks& remarks,
+                                                         const std::string& groups = {});
 
 /// Completes the command. A missing command is replaced by the previous command. Samples before the first
 /// command are left out. If the file has no command, the measured pressure is used as the command. Samples

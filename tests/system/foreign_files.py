@@ -481,6 +481,12 @@ def other_fingers_and_clocks():
         File("finger_rows.mat", "MATLAB 5: rows of several fingers, each with the number of its finger", matlab_5(structures("run", [
             {name: matrix("", values) for name, values in zip(names, zip(*rows))}])),
              refused="the rows belong to 2 fingers: 'run.finger' has 1, 2"),
+        File("id_rows.csv", "rows of two devices at the same times, with the number of the device in a column id", table(
+            ["time_s", "id", "set_kpa", "tip_mm"], list(zip(*((t, *row[1:]) for t, row in zip([t for t in T for _ in (1, 2)], rows))))),
+             left_out={"repeated_time": COUNT}, says="the column 'id' (values 1, 2) separates them"),
+        File("id_runs.csv", "two runs one after the other, with the number of the run in a column id", table(
+            ["time_s", "id", "set_kpa", "tip_mm"], [T * 2, [1] * COUNT + [2] * COUNT, COMMAND * 2, TIP * 2]),
+             refused="the time goes back"),
         File("finger_readings.csv", "readings in a column called finger", readings, "--displacement finger --unit displacement=mm"),
         File("two_steps.lvm", "a LabVIEW measurement without X columns, with 2 rates", one_x.replace("0,01\t0,01", "0,01\t0,02"),
              refused="the channels share one X column, but differ in Delta_X: 0,01 and 0,02"),

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/numbers.h"
@@ -277,6 +279,49 @@ TEST(Propose, KeepsGivenAssignments) {
   const Proposal proposal = propose(table, given, true);
   EXPECT_FALSE(proposal.mapping[Role::command].given());
   EXPECT_EQ(proposal.guessed, (std::vector<Role>{Role::time, Role::displacement}));
+}
+
+/// Returns a text with the rows of two devices. The second device has 0.5 times the readings of the first.
+std::string devices(const std::string& column, bool in_turn, double delay_s = 0) {
+  std::array<std::string, 2> blocks;
+  std::string mixed;
+  for (int i = 0; i < 200; ++i) {
+    const double p = 30 - std::abs(i % 100 - 50) * 0.6;
+    for (int k = 0; k < 2; ++k) {
+      const std::string row = shortest(0.01 * i + k * delay_s) + "," + std::to_string(k + 1) + "," +
+                              shortest(p) + "," + shortest((1 - 0.5 * k) * (5 + 0.2 * p + 0.01 * i)) + "\n";
+      mixed += row;
+      blocks.at(static_cast<std::size_t>(k)) += row;
+    }
+  }
+  return "t_s," + column + ",p_cmd_kpa,tip_mm\n" + (in_turn ? mixed : blocks[0] + blocks[1]);
+}
+
+TEST(Convert, RowsOfTwoDevicesAreReportedWithTheColumnThatSeparatesThem) {
+  const Mapping mapping = mapping_of("t_s", "p_cmd_kpa", "tip_mm");
+  const std::string expected = "the column 'id' (values 1, 2) separates them";
+  for (const double delay_s : {0.0, 0.002}) {
+    const ImportedLog mixed = log_of(devices("id", true, delay_s), mapping);
+    const auto& warnings = mixed.warnings;
+    EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [&](const std::string& w) {
+      return w.find(expected) != std::string::npos;
+    })) << delay_s;
+    EXPECT_TRUE(std::none_of(warnings.begin(), warnings.end(),
+                             [](const std::string& w) { return w.find("--rate-hz") != std::string::npos; }));
+  }
+  const std::string refused = refusal(devices("id", false), mapping);
+  EXPECT_NE(refused.find("the time goes back"), std::string::npos) << refused;
+  EXPECT_NE(refused.find(expected), std::string::npos) << refused;
+  EXPECT_EQ(refused.find("--rate-hz"), std::string::npos) << refused;
+}
+
+TEST(Convert, ARowCounterOfATimeStampIsNoDevice) {
+  const ImportedLog log = log_of(text_of("t_s,sample,p_cmd_kpa,tip_mm", [](int i, double p, double y) {
+    return shortest(0.02 * (i / 2)) + "," + std::to_string(i % 2) + "," + shortest(p) + "," + shortest(y);
+  }));
+  ASSERT_FALSE(log.warnings.empty());
+  EXPECT_NE(log.warnings.back().find("--rate-hz 100 instead of --time"), std::string::npos)
+      << log.warnings.back();
 }
 
 /// Line 22 has more cells than the header. Line 40 has a cell that is not a number.
