@@ -49,9 +49,11 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index,
     p.upper = std::min(spec.upper, largest_latency * units.time_s);
   }
   if (spec.per_pressure) {
-    const double unit = (spec.unit.starts_with("mm") ? units.displacement_mm : 1.0) / units.pressure_kpa;
+    const bool gain = spec.unit.starts_with("mm");
+    const double unit = (gain ? units.displacement_mm : 1.0) / units.pressure_kpa;
     const double largest = largest_per_pressure * unit;
     p.scale = spec.scale * unit;
+    if (gain) p.lower *= std::min(1.0, units.displacement_mm);
     p.lower = std::max(p.lower, -largest);
     p.upper = std::min(spec.upper, largest);
   }

@@ -87,9 +87,10 @@ std::string wrong_way_sentence(double beta_over_gain) {
   // Largest ratio that is stated as a number. If alpha and 1/k0 are almost zero, the ratio is larger, and its
   // exact value has no meaning.
   constexpr double largest_told = 1000;
-  const std::string ratio = beta_over_gain < largest_told
-                                ? "= " + significant(beta_over_gain, 3) + " is above 1"
-                                : "is far above 1";
+  const std::string rounded = significant(beta_over_gain, 3);
+  const std::string ratio = beta_over_gain >= largest_told ? "is far above 1"
+                            : rounded == "1"               ? "is slightly above 1"
+                                                           : "= " + rounded + " is above 1";
   return "beta / (alpha + 1/k0) " + ratio +
          ", so the model has an inverse response (it first moves opposite to the command) and no usable "
          "inverse. The usual cause is a latency in the data";

@@ -113,9 +113,10 @@ double pressure_unit_kpa(const std::vector<Record>& records) {
 }
 
 double displacement_unit_mm(const std::vector<Record>& records) {
-  constexpr double largest_of_a_finger_mm = 40;
+  constexpr double smallest_of_a_finger_mm = 1, largest_of_a_finger_mm = 40;
   double span_mm = 0;
   for (const Record& record : records) span_mm = std::max(span_mm, record.span_mm);
+  if (span_mm > 0 && span_mm < smallest_of_a_finger_mm) return span_mm / smallest_of_a_finger_mm;
   return std::max(1.0, span_mm / largest_of_a_finger_mm);
 }
 

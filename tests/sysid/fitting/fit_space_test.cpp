@@ -51,6 +51,28 @@ TEST(FitSpace, LimitsALagInUnitsOfTheTimeThatTheRecordsResolve) {
   EXPECT_NEAR(limit_s(0.0001), 0.0316, 1e-4);
 }
 
+/// A log in metres has the limits per span of a log in millimetres. The limits of an ordinary finger are
+/// exact.
+TEST(FitSpace, LimitsGainsInUnitsOfTheSpanOfTheRecords) {
+  const model::Model finger =
+      model::with_block({}, {model::block_type<model::BoucWen>(), {0.35, 0.2, 0.03, 0.03, 1}});
+  const auto alpha = [&](double span_mm) {
+    Record record = sampled_every(0.01);
+    record.largest_kpa = 40;
+    record.span_mm = span_mm;
+    return FitSpace(finger, {record}, {0}).free().front();
+  };
+  for (const double span_mm : {0.0, 1.0, 20.0, 40.0}) {
+    EXPECT_EQ(alpha(span_mm).upper, 10) << span_mm;
+    EXPECT_EQ(alpha(span_mm).lower, alpha(1).lower) << span_mm;
+    EXPECT_EQ(alpha(span_mm).scale, alpha(1).scale) << span_mm;
+  }
+  EXPECT_DOUBLE_EQ(alpha(400).upper, 100);
+  EXPECT_DOUBLE_EQ(alpha(0.002).upper, 0.02);
+  EXPECT_DOUBLE_EQ(alpha(0.002).scale, 0.002 * alpha(1).scale);
+  EXPECT_DOUBLE_EQ(alpha(0.002).lower, 0.002 * alpha(1).lower);
+}
+
 TEST(FitSpace, LimitsRatesInUnitsOfThePressureOfTheRecords) {
   const model::Model finger =
       model::with_block({}, {model::block_type<model::BoucWen>(), {0.35, 0.2, 0.03, 0.03, 1}});

@@ -41,6 +41,12 @@ std::vector<Log> two_logs(const Model& truth, double rate_hz = 50, double noise_
           simulated(truth, SignalName::sp2, rate_hz, noise_mm, 12)};
 }
 
+TEST(WrongWaySentence, StatesNoRatioThatIsRoundedToOne) {
+  EXPECT_EQ(wrong_way_sentence(1.0004).find("beta / (alpha + 1/k0) is slightly above 1, so"), 0U);
+  EXPECT_EQ(wrong_way_sentence(1.01).find("beta / (alpha + 1/k0) = 1.01 is above 1, so"), 0U);
+  EXPECT_EQ(wrong_way_sentence(5000).find("beta / (alpha + 1/k0) is far above 1, so"), 0U);
+}
+
 TEST(IntervalText, StatesIfTheLogsDoNotDetermineTheValue) {
   EXPECT_EQ(text_of({0.127, 0.133}, 0.13, " .. "), "0.127 .. 0.133");
   EXPECT_EQ(text_of({-1, 1}, 0.2, " to "), "-1 to 1");
