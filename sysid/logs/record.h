@@ -120,8 +120,8 @@ struct Record {
 [[nodiscard]] double pressure_unit_kpa(const std::vector<Record>& records);
 
 /// Returns the unit of displacement in which a fit searches for gains [mm]. The unit is 1 mm if the largest
-/// span of the readings is from 1 to 40 mm, as it is for soft fingers. For a larger span, the unit is 2.5 % of
-/// the span, for example if the readings are in micrometres. For a smaller span, the unit is the span, for
+/// span of the readings is from 1 to 40 mm, as it is for soft fingers. For a larger span, the unit is 2.5 %
+/// of the span, for example if the readings are in micrometres. For a smaller span, the unit is the span, for
 /// example if the readings are in metres. The limits per span are then those of a finger.
 /// @param records  at least one record.
 [[nodiscard]] double displacement_unit_mm(const std::vector<Record>& records);
