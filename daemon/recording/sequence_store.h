@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "control/tick/sequence.h"
 
@@ -25,14 +26,27 @@ struct LoadedSequence {
 /// recorded.
 class SequenceStore {
  public:
-  void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);
+  void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence) {
+    const std::scoped_lock lock(mutex_);
+    sequences_.insert_or_assign(request, std::move(sequence));
+  }
   /// Returns the sequence of a request; nullptr if it is not stored.
-  [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const;
+  [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const {
+    const std::scoped_lock lock(mutex_);
+    const auto found = sequences_.find(request);
+    return found == sequences_.end() ? nullptr : found->second;
+  }
   /// Removes the sequence of a request whose start was refused or did not reach the loop.
-  void drop(std::uint32_t request);
+  void drop(std::uint32_t request) {
+    const std::scoped_lock lock(mutex_);
+    sequences_.erase(request);
+  }
   /// Removes the sequences of all requests with a number below `request`. The loop has accepted the start of
   /// `request`, so it never runs these sequences.
-  void drop_before(std::uint32_t request);
+  void drop_before(std::uint32_t request) {
+    const std::scoped_lock lock(mutex_);
+    sequences_.erase(sequences_.begin(), sequences_.lower_bound(request));
+  }
 
  private:
   mutable std::mutex mutex_;

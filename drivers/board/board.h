@@ -8,7 +8,9 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 
+#include "base/enum_table.h"
 #include "model/reading.h"
 
 namespace softgrip::drivers {
@@ -33,7 +35,18 @@ enum class BusStatus : std::uint8_t {
                      ///< before the first response
 };
 /// Returns the name of a result: "ok", "disconnected", "timed_out" ...
-[[nodiscard]] std::string_view name_of(BusStatus status) noexcept;
+[[nodiscard]] inline std::string_view name_of(BusStatus status) noexcept {
+  static constexpr auto names = enum_names<BusStatus>({{BusStatus::ok, "ok"},
+                                                       {BusStatus::disconnected, "disconnected"},
+                                                       {BusStatus::timed_out, "timed_out"},
+                                                       {BusStatus::bad_reply, "bad_reply"},
+                                                       {BusStatus::exception, "exception"},
+                                                       {BusStatus::write_refused, "write_refused"},
+                                                       {BusStatus::overwritten, "overwritten"},
+                                                       {BusStatus::watchdog_tripped, "watchdog_tripped"},
+                                                       {BusStatus::closed_at_once, "closed_at_once"}});
+  return names[status];
+}
 
 /// An I/O board. One thread calls all functions: the bus thread, or the control loop in virtual time.
 class Board {

@@ -58,6 +58,8 @@ inline constexpr auto word_order_names =
 /// The unit of the quantity at a terminal. A pressure generator has an air port as terminal, with the unit
 /// kPa.
 enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
+inline constexpr auto unit_names = enum_names<ElectricalUnit>(
+    {{ElectricalUnit::volt, "V"}, {ElectricalUnit::milliampere, "mA"}, {ElectricalUnit::kilopascal, "kPa"}});
 
 /// Returns the number of registers that a number of this kind occupies: 1 or 2.
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
@@ -73,7 +75,9 @@ inline constexpr auto register_kind_names = enum_names<RegisterKind>({{RegisterK
   return register_kind_names[kind];
 }
 /// Returns the symbol of a unit: "V", "mA" or "kPa".
-[[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
+[[nodiscard]] constexpr std::string_view name_of(ElectricalUnit unit) noexcept {
+  return unit_names[unit];
+}
 
 /// Consecutive numbers of one kind. `address` is the address in the Modbus request: the address in the board
 /// file minus address_base of this file.

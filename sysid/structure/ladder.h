@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "model/exponential.h"
 #include "model/segment.h"
 
 namespace softgrip::sysid {
@@ -21,7 +22,9 @@ class LadderWeights {
     Pair loss{}, begin{}, rise{}, bend{};
   };
 
-  explicit LadderWeights(const std::vector<double>& time_constants_s);
+  explicit LadderWeights(const std::vector<double>& time_constants_s) {
+    for (const double tau_s : time_constants_s) rates_hz_.push_back(1 / tau_s);
+  }
 
   [[nodiscard]] std::size_t pairs() const noexcept { return (rates_hz_.size() + 1) / 2; }
   /// Returns the weights of all pairs of branches for a step of this duration. The pointer is valid until the
@@ -32,7 +35,28 @@ class LadderWeights {
   }
 
  private:
-  void find(double duration_s);
+  /// Largest number of durations that are stored. Their weights need about 5 MB.
+  static constexpr std::size_t most_durations = 16'384;
+
+  void find(double duration_s) {
+    if (index_.size() >= most_durations) {
+      index_.clear();
+      stored_.clear();
+    }
+    const auto [place, is_new] = index_.try_emplace(duration_s, stored_.size());
+    last_s_ = duration_s;
+    at_ = place->second;
+    if (!is_new) return;
+    stored_.resize(stored_.size() + pairs());
+    for (std::size_t i = 0; i < rates_hz_.size(); ++i) {
+      const auto w = model::ExponentialWeights<double>::make(duration_s, rates_hz_[i], rates_hz_[i]);
+      PairWeights& pair = stored_[at_ + i / 2];
+      pair.loss[i % 2] = w.loss;
+      pair.begin[i % 2] = w.end_begin;
+      pair.rise[i % 2] = w.end_rise;
+      pair.bend[i % 2] = w.end_bend;
+    }
+  }
 
   std::vector<double> rates_hz_;
   std::unordered_map<double, std::size_t> index_;  ///< for each duration, the index of its first pair
