@@ -3,6 +3,7 @@
 // The settings in the `real_time` map of a rig file, which the daemon requests from the operating system.
 // The settings in the `recorder` map of a rig file: contents, folder and write intervals of recordings.
 // The settings in the `socket` map of a rig file: the Unix domain sockets of the daemon.
+// The settings in the `gpio` map of a rig file: the digital lines and their functions.
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +15,8 @@
 
 #include "base/enum_table.h"
 #include "base/time.h"
+#include "document/problem.h"
+#include "drivers/gpio/gpio_lines.h"
 
 namespace softgrip::rig {
 
@@ -111,6 +114,27 @@ struct SocketSettings : SocketFile {
   std::size_t max_queue_bytes = 1024 * 1024;
   /// Folder with the sequences that clients can start by name.
   std::string sequence_directory = "/etc/softgrip/sequences";
+};
+
+/// The map `gpio` of a rig file. rig/rig_keys.cpp declares the meaning and the range of each member.
+struct GpioSettings {
+  double debounce_s = 0;
+  double stale_after_s = 0;
+  double look_interval_s = 0.005;
+  /// True: the enable output stays on while a fault is latched. An emergency stop, lost input lines and a
+  /// stalled control loop switch it off in any case.
+  bool keeps_enable_on_fault = false;
+  std::vector<drivers::GpioLineSettings> lines;  ///< settings of the digital lines; at most one line for each
+                                                 ///< purpose
+  std::vector<document::Problem> places;  ///< location of each line in the rig file, stored as a problem
+                                          ///< without a message
+
+  [[nodiscard]] bool has(drivers::GpioRole role) const noexcept {
+    for (const drivers::GpioLineSettings& line : lines) {
+      if (line.role == role) return true;
+    }
+    return false;
+  }
 };
 
 }  // namespace softgrip::rig

@@ -17,7 +17,6 @@
 #include "drivers/iio/iio_board.h"
 #include "drivers/modbus/modbus_board.h"
 #include "rig/daemon_settings.h"
-#include "rig/gpio_settings.h"
 #include "simulation/plant/simulated_board.h"
 
 namespace softgrip::rig {

@@ -12,7 +12,7 @@
 #include "daemon/loop/statistics.h"
 #include "daemon/panel/trip_input.h"
 #include "drivers/gpio/gpio_lines.h"
-#include "rig/gpio_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

@@ -14,7 +14,7 @@
 #include "daemon/recording/recorder.h"
 #include "daemon/recording/run_json.h"
 #include "daemon/socket/service.h"
-#include "rig/gpio_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 
