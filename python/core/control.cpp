@@ -1,4 +1,4 @@
-#include "python/core/control.h"
+#include "python/core/bindings.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -15,7 +15,7 @@
 
 #include <softgrip/softgrip.h>
 
-#include "python/core/words.h"
+#include "python/core/values.h"
 
 namespace py = pybind11;
 

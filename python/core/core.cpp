@@ -7,11 +7,9 @@
 
 #include <softgrip/softgrip.h>
 
-#include "python/core/arrays.h"
-#include "python/core/control.h"
-#include "python/core/health.h"
+#include "python/core/bindings.h"
 #include "python/core/interruptible.h"
-#include "python/core/words.h"
+#include "python/core/values.h"
 
 namespace py = pybind11;
 

@@ -1,4 +1,4 @@
-#include "python/core/health.h"
+#include "python/core/bindings.h"
 
 #include <pybind11/stl.h>
 
@@ -9,9 +9,8 @@
 
 #include <softgrip/softgrip.h>
 
-#include "python/core/arrays.h"
 #include "python/core/interruptible.h"
-#include "python/core/words.h"
+#include "python/core/values.h"
 
 namespace py = pybind11;
 

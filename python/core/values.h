@@ -1,13 +1,18 @@
 #pragma once
-// Converts between NumPy arrays and vectors of C++.
+// Converts arguments and results of Python: NumPy arrays to and from vectors of C++, and words to
+// enumerations.
 
 #include <pybind11/numpy.h>
 
 #include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include <softgrip/error.h>
 
 namespace softgrip::python {
 
@@ -31,6 +36,18 @@ pybind11::array_t<Value> array_of(std::vector<Value> values) {
   const pybind11::capsule capsule(owner.release(),
                                   [](void* held) { delete static_cast<std::vector<Value>*>(held); });
   return pybind11::array_t<Value>(static_cast<pybind11::ssize_t>(data->size()), data->data(), capsule);
+}
+
+/// Returns the enumeration value for a text argument that permits only a few words.
+template <class Value>
+Value chosen(const char* argument, const std::string& word,
+             std::initializer_list<std::pair<const char*, Value>> words) {
+  std::string all;
+  for (const auto& [name, value] : words) {
+    if (word == name) return value;
+    all += std::string(all.empty() ? "'" : ", '") + name + "'";
+  }
+  throw InvalidArgument(argument, "'" + word + "' is not one of " + all);
 }
 
 }  // namespace softgrip::python
