@@ -1,7 +1,5 @@
 #include "drivers/modbus/mbap.h"
 
-#include "drivers/modbus/big_endian.h"
-
 namespace softgrip::drivers {
 namespace {
 

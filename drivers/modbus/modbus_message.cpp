@@ -4,8 +4,6 @@
 
 #include <modbus/modbus.h>
 
-#include "drivers/modbus/big_endian.h"
-
 namespace softgrip::drivers {
 namespace {
 

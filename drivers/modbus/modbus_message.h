@@ -11,6 +11,17 @@
 
 namespace softgrip::drivers {
 
+/// word_at() reads and put_word() writes a word of a byte buffer, high byte first. The caller must check that
+/// the index `at + 1` is within the buffer.
+[[nodiscard]] inline std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
+}
+
+inline void put_word(std::span<std::uint8_t> bytes, std::size_t at, std::uint16_t value) noexcept {
+  bytes[at] = static_cast<std::uint8_t>(value >> 8);
+  bytes[at + 1] = static_cast<std::uint8_t>(value & 0xff);
+}
+
 /// Longest request or response without its framing [bytes]: function code and 252 bytes of data.
 inline constexpr std::size_t max_pdu = 253;
 /// Largest size of a frame on TCP and on serial lines [bytes]. The frames of Modbus TCP are longer than those

@@ -10,7 +10,6 @@
 
 #include "base/clock.h"
 #include "drivers/board/registers.h"
-#include "drivers/modbus/big_endian.h"
 
 namespace softgrip::drivers {
 namespace {

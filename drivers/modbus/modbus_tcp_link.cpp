@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/text.h"
-#include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/mbap.h"
 #include "drivers/modbus/tcp_socket.h"
 

@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::modbus {

@@ -11,10 +11,10 @@
 
 #include "base/clock.h"
 #include "drivers/board/registers.h"
-#include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/exchange_plan.h"
 #include "drivers/modbus/modbus_board.h"
 #include "drivers/modbus/modbus_link.h"
+#include "drivers/modbus/modbus_message.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::doctor {

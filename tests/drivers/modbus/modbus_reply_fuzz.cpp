@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "drivers/board/registers.h"
-#include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/mbap.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "base/clock.h"
-#include "drivers/modbus/big_endian.h"
+#include "drivers/modbus/modbus_message.h"
 #include "drivers/modbus/serial_port.h"
 #include "tests/drivers/modbus/scripted_line.h"
 

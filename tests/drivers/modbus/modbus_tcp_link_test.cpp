@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "drivers/modbus/big_endian.h"
+#include "drivers/modbus/modbus_message.h"
 #include "tests/drivers/modbus/scripted_server.h"
 
 namespace softgrip::drivers::modbus_tcp_link_test {
