@@ -161,7 +161,7 @@ softgrip_room(tools/commissioning
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base base/result document model model/file control/elements control/feedforward control/tuning simulation/plant rig
-       daemon/service daemon/socket sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
+       daemon/service daemon/socket sysid/logs sysid/recordings sysid/pages sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
 # Computes the values of a report independently, to verify the report.

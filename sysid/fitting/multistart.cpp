@@ -255,16 +255,6 @@ void order_branches(const std::vector<double>& like_s, FitPoint& point) {
   }
 }
 
-CampaignSize campaign_size(const std::vector<Record>& records) {
-  CampaignSize extent;
-  for (const Record& record : records) {
-    extent.largest_kpa = std::max(extent.largest_kpa, record.largest_kpa);
-    extent.span_mm = std::max(extent.span_mm, record.span_mm);
-    extent.longest_s = std::max(extent.longest_s, record.length_s());
-  }
-  return extent;
-}
-
 std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
                                   const std::vector<Record>& records, std::size_t count, std::uint64_t seed) {
   std::vector<FitPoint> starts{given};

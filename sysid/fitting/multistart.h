@@ -40,14 +40,6 @@ using ShowProgress = std::function<void(const Progress&)>;
 /// time constants in `like_s`.
 void order_branches(const std::vector<double>& like_s, FitPoint& point);
 
-/// Scale of the data of all records.
-struct CampaignSize {
-  double largest_kpa = 0;  ///< largest magnitude of the input pressure in all records
-  double span_mm = 0;      ///< largest span of the readings in a record
-  double longest_s = 0;    ///< duration of the longest record
-};
-[[nodiscard]] CampaignSize campaign_size(const std::vector<Record>& records);
-
 /// Returns `count` start points. The first one is the given model. The others are random points, alternately
 /// at the scale of the data (pressure, span, length) and around the given model. Parameters that are not free
 /// in `space` keep their values.

@@ -145,4 +145,14 @@ model::Model deterministic_part(const model::Model& model, Drive drive) {
   return part;
 }
 
+CampaignSize campaign_size(const std::vector<Record>& records) {
+  CampaignSize extent;
+  for (const Record& record : records) {
+    extent.largest_kpa = std::max(extent.largest_kpa, record.largest_kpa);
+    extent.span_mm = std::max(extent.span_mm, record.span_mm);
+    extent.longest_s = std::max(extent.longest_s, record.length_s());
+  }
+  return extent;
+}
+
 }  // namespace softgrip::sysid

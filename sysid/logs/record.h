@@ -141,4 +141,12 @@ void hide_reading(Record& record, std::size_t sample);
 /// removed. For Drive::measured, the blocks of the valve are removed too, except a chamber lag.
 [[nodiscard]] model::Model deterministic_part(const model::Model& model, Drive drive);
 
+/// Scale of the data of all records.
+struct CampaignSize {
+  double largest_kpa = 0;  ///< largest magnitude of the input pressure in all records
+  double span_mm = 0;      ///< largest span of the readings in a record
+  double longest_s = 0;    ///< duration of the longest record
+};
+[[nodiscard]] CampaignSize campaign_size(const std::vector<Record>& records);
+
 }  // namespace softgrip::sysid

@@ -12,7 +12,6 @@
 #include "base/text.h"
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/report/report.h"
-#include "sysid/fitting/multistart.h"
 #include "sysid/identification/log_report.h"
 #include "sysid/pages/page.h"
 

@@ -9,7 +9,7 @@
 #include "base/enum_table.h"
 #include "base/numbers.h"
 #include "sysid/diagnosis/causes/contact.h"
-#include "sysid/fitting/multistart.h"
+#include "sysid/logs/record.h"
 #include "tools/investigation/experiment_rig.h"
 
 namespace softgrip::tools {
