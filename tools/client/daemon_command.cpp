@@ -8,6 +8,7 @@
 
 #include "document/problem.h"
 #include "rig/socket_path.h"
+#include "tools/command_line/input_files.h"
 
 namespace softgrip::tools {
 

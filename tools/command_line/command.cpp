@@ -1,12 +1,10 @@
 #include "tools/command_line/command.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 
-#include "base/files.h"
-#include "base/text.h"
+#include <CLI/CLI.hpp>
+
 #include "document/problem.h"
 
 namespace softgrip::tools {
@@ -23,16 +21,16 @@ ExitCode refuse(const document::Problems& problems) {
   return ExitCode::input_refused;
 }
 
-std::string why_unreadable(const std::string& path) {
-  if (is_folder(path)) return ::access(path.c_str(), R_OK) == 0 ? std::string() : text_of_errno(errno);
-  const auto file = open_regular(path);
-  return file ? std::string() : file.error();
-}
-
-std::optional<ExitCode> unreadable(const std::string& path) {
-  const std::string why = why_unreadable(path);
-  if (why.empty()) return std::nullopt;
-  return fail(ExitCode::io, "cannot read " + path + ": " + why);
+std::vector<std::string> call_of(const CLI::App& command) {
+  std::vector<std::string> call{command.get_name()};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || name == "--out" || name == "--json" || name == "--figures") continue;
+    call.push_back(name);
+    const bool is_flag = option->get_items_expected_max() == 0;
+    if (!is_flag) call.insert(call.end(), option->results().begin(), option->results().end());
+  }
+  return call;
 }
 
 }  // namespace softgrip::tools

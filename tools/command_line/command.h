@@ -6,9 +6,9 @@
 // and one line in commands.h. The function adds its subcommand to `program`. If the user chose this
 // subcommand, the callback of the subcommand runs it and stores the exit code in `outcome`.
 
-#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/exit_code.h"
 
@@ -32,12 +32,8 @@ ExitCode fail(ExitCode code, std::string_view message);
 /// problems. Returns ExitCode::input_refused.
 ExitCode refuse(const document::Problems& problems);
 
-/// Returns "" if `path` is a folder or a regular file that can be opened for reading. Otherwise returns the
-/// reason why it cannot be read.
-[[nodiscard]] std::string why_unreadable(const std::string& path);
-
-/// Returns nullopt if `path` is readable. Otherwise prints a sentence to the standard error and returns
-/// ExitCode::io.
-[[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
+/// Returns the command's name and arguments for its JSON result, without the arguments that select the output
+/// (--out, --json, --figures). `softgrip report --verify` repeats this call.
+[[nodiscard]] std::vector<std::string> call_of(const CLI::App& command);
 
 }  // namespace softgrip::tools

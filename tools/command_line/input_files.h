@@ -25,6 +25,14 @@ namespace softgrip::tools {
 /// the folder is unreadable.
 [[nodiscard]] std::vector<std::string> document_names(const std::filesystem::path& folder);
 
+/// Returns "" if `path` is a folder or a regular file that can be opened for reading. Otherwise returns the
+/// reason why it cannot be read.
+[[nodiscard]] std::string why_unreadable(const std::string& path);
+
+/// Returns nullopt if `path` is readable. Otherwise prints a sentence to the standard error and returns
+/// ExitCode::io.
+[[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
+
 /// Returns nullopt if `path` is not a folder. Otherwise prints a sentence and returns ExitCode::io. If the
 /// folder contains a file `usual`, the sentence names this file.
 [[nodiscard]] std::optional<ExitCode> refuse_folder(const std::string& path, const std::string& usual = "");

@@ -14,12 +14,9 @@
 
 #include "base/exit_code.h"
 #include "base/numbers.h"
+#include "tools/command_line/command.h"
 
 namespace softgrip::tools {
-
-/// Returns the command's name and arguments for its JSON result, without the arguments that select the output
-/// (--out, --json, --figures). `softgrip report --verify` repeats this call.
-[[nodiscard]] std::vector<std::string> call_of(const CLI::App& command);
 
 /// A subcommand and its options. The subcommand owns the options.
 template <class Options>

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/client/set_option.h"
+#include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 

@@ -22,7 +22,7 @@
 #include "sysid/logs/log.h"
 #include "sysid/logs/plausibility_warnings.h"
 #include "sysid/logs/sensor_codes.h"
-#include "tools/command_line/command.h"
+#include "tools/command_line/input_files.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/terminal.h"
 
