@@ -16,13 +16,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <limits>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 
 #include "strength.h"
@@ -43,59 +41,26 @@ struct Arguments {
 
 Arguments arguments(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string key = argv[i];
-    if (key == "--poor") {
-      a.runs = 1;
-      continue;
-    }
-    if (key == "--closed-loop") {
-      a.closed_loop = true;
-      continue;
-    }
-    if (key == "--pressure") {
-      a.pressure = true;
-      continue;
-    }
-    if (key == "--list-runs") {
-      a.list_runs = true;
-      continue;
-    }
-    if (key == "--list") {
-      a.list = true;
-      continue;
-    }
-    if (i + 1 >= argc) throw std::invalid_argument("no value for " + key);
-    const std::string value = argv[++i];
-    if (key == "--seed")
-      a.seed = std::stoull(value);
-    else if (key == "--out")
-      a.out = value;
-    else if (key == "--truth")
-      a.truth = value;
-    else if (key == "--cause")
-      a.cause = value;
-    else if (key == "--strength")
-      a.strength = std::stod(value);
-    else if (key == "--campaign")
-      a.campaign = std::stoull(value);
-    else if (key == "--runs")
-      a.runs = std::stoull(value);
-    else if (key == "--variation")
-      a.variation = std::stod(value);
-    else if (key == "--zero-mm")
-      a.zero_mm = std::stod(value);
-    else if (key == "--warmer-c")
-      a.warmer_c = std::stod(value);
-    else if (key == "--command")
-      a.commands.push_back(value);
-    else if (key == "--log")
-      a.log = value;
-    else if (key == "--gauge")
-      a.gauge = value;
-    else
-      throw std::invalid_argument("unknown option " + key);
-  }
+  worlds::Options options;
+  options.flag("--poor", [&a] { a.runs = 1; });
+  options.flag("--closed-loop", a.closed_loop);
+  options.flag("--pressure", a.pressure);
+  options.flag("--list-runs", a.list_runs);
+  options.flag("--list", a.list);
+  options.value("--seed", a.seed);
+  options.value("--out", a.out);
+  options.value("--truth", a.truth);
+  options.value("--cause", a.cause);
+  options.value("--strength", a.strength);
+  options.value("--campaign", a.campaign);
+  options.value("--runs", a.runs);
+  options.value("--variation", a.variation);
+  options.value("--zero-mm", a.zero_mm);
+  options.value("--warmer-c", a.warmer_c);
+  options.value("--command", [&a](const std::string& path) { a.commands.push_back(path); });
+  options.value("--log", a.log);
+  options.value("--gauge", a.gauge);
+  options.read(argc, argv);
   return a;
 }
 
@@ -187,33 +152,15 @@ void write_gauge(const std::string& path, const std::vector<double>& positions,
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-double duration_s(const std::vector<blind::LogInput>& logs) {
-  double sum = 0;
-  for (const auto& log : logs) sum += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
-  return sum;
-}
-
-void write_truth(const std::string& path, const Arguments& a, const blind::Effects& effects,
-                 const std::map<std::string, blind::Scaled>& scaled, const blind::Sensor& sensor) {
+void write_truth(const std::string& path, const Arguments& a,
+                 const std::map<std::string, blind::Scaled>& hidden, const blind::Sensor& sensor) {
   std::ofstream file(path);
   // Write the true values with all digits. With six digits, the rounding error of a frequency would exceed
   // the error of an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << sensor.noise_mm
-       << ", \"effects\": {";
-  const char* comma = "";
-  for (const auto& [id, effect] : effects) {
-    file << comma << "\"" << id << "\": {\"excess_mm\": " << scaled.at(id).excess_mm
-         << ", \"reachable\": " << (scaled.at(id).reachable ? "true" : "false") << ", \"parameters\": {";
-    const char* inner = "";
-    for (const auto& [name, value] : effect) {
-      file << inner << "\"" << name << "\": " << value;
-      inner = ", ";
-    }
-    file << "}}";
-    comma = ", ";
-  }
-  file << "}}\n";
+       << ", ";
+  worlds::write_effects(file, hidden);
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
@@ -237,20 +184,19 @@ int run(const Arguments& a) {
   std::vector<blind::LogInput> logs = blind::draw_campaign({drive_seed, a.runs, a.variation, span_mm});
   blind::Effects effects;
   std::map<std::string, blind::Scaled> scaled;
-  std::stringstream ids(a.cause);
-  for (std::string id; std::getline(ids, id, ',');) {
+  for (const std::string& id : worlds::ids_in(a.cause)) {
     const auto rich = blind::draw_campaign({drive_seed});
     scaled[id] = blind::scale_to(id, a.strength * sensor.noise_mm, base, rich, a.seed);
-    effects[id] = scaled[id].effect;
+    effects[id] = scaled[id].numbers;
   }
   for (const std::string& path : a.commands) {
     double rate_hz = 0;
     auto command = read_command(path, rate_hz);
-    logs.push_back(blind::surrounded(std::move(command), rate_hz, duration_s(logs), a.seed));
+    logs.push_back(blind::surrounded(std::move(command), rate_hz, worlds::duration_s(logs), a.seed));
   }
   if (!a.gauge.empty()) {
     const auto positions = read_positions(a.gauge);
-    const auto clean = blind::held_at(effects, positions, duration_s(logs), a.seed, {});
+    const auto clean = blind::held_at(effects, positions, worlds::duration_s(logs), a.seed, {});
     write_gauge(a.log, positions, clean, sensor, a.seed * 31 + 500000);
     return 0;
   }
@@ -273,17 +219,12 @@ int run(const Arguments& a) {
     write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], outputs[i], sensor, a.pressure,
               noise_seed(i));
   }
-  write_truth(a.truth, a, effects, scaled, sensor);
+  write_truth(a.truth, a, scaled, sensor);
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(arguments(argc, argv));
-  } catch (const std::exception& error) {
-    std::cerr << "blind-world: " << error.what() << "\n";
-    return 2;
-  }
+  return worlds::exit_code_of("blind-world", [&] { return run(arguments(argc, argv)); });
 }

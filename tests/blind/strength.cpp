@@ -85,12 +85,6 @@ class Meter {
   std::vector<std::vector<double>> directions_;
 };
 
-double campaign_s(const std::vector<LogInput>& logs) {
-  double sum = 0;
-  for (const LogInput& log : logs) sum += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
-  return sum;
-}
-
 }  // namespace
 
 double excess_mm(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
@@ -101,7 +95,9 @@ double excess_mm(const Base& base, const Effects& effects, const std::vector<Log
 Scaled scale_to(const std::string& id, double target_mm, const Base& base, const std::vector<LogInput>& logs,
                 std::uint64_t seed) {
   const Meter meter(base, logs, seed);
-  const auto effect = [&](double s) { return draw_effect(id, s, seed, meter.span_mm(), campaign_s(logs)); };
+  const auto effect = [&](double s) {
+    return draw_effect(id, s, seed, meter.span_mm(), worlds::duration_s(logs));
+  };
   double low = std::log(1e-5), high = 0;
   const double largest = meter.excess_mm({{id, effect(1)}});
   if (largest < target_mm) return {effect(1), largest, false};

@@ -9,18 +9,13 @@
 
 namespace blind {
 
+using worlds::Scaled;
+
 /// Computes the change of the displacement that an effect causes. Removes the part of this change that small
 /// changes of the actuator parameters and of the zero can explain, by a linear projection on finite
 /// differences. Returns the RMS [mm] of the remaining change over the campaign.
 double excess_mm(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                  std::uint64_t seed);
-
-struct Scaled {
-  Effect effect;
-  double excess_mm = 0;   ///< RMS error [mm] of a model that is refitted without the scaled effect
-  bool reachable = true;  ///< false: even the largest physical size of the effect causes less than the
-                          ///< requested error
-};
 
 /// Returns the effect `id`, scaled so that a model that is refitted without the effect has the RMS error
 /// `target_mm`, within about 3 %. If this error is not reachable, returns the effect with its largest

@@ -269,19 +269,7 @@ class Follower {
   std::optional<variation::Controller> controller_;
 };
 
-template <class Values>
-void drop_first(Values& values, std::size_t count) {
-  if (!values.empty()) values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-}
-
 }  // namespace
-
-void drop_unrecorded(LogInput& in, LogOutput& out) {
-  for (std::vector<double>* values : {&in.command_kpa, &in.temperature_c, &in.supply_kpa, &in.reference_mm,
-                                      &out.command_kpa, &out.pressure_kpa, &out.displacement_mm})
-    drop_first(*values, in.unrecorded);
-  in.unrecorded = 0;
-}
 
 double span_mm(const Base& base, double pressure_kpa) {
   constexpr std::size_t half = 500;

@@ -4,9 +4,10 @@
 // of the causes, not the code of the blocks.
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
+
+#include "world_program.h"
 
 namespace blind {
 
@@ -21,37 +22,16 @@ struct Base {
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// Parameters of a hidden effect, by the name of the parameter. The map Effects contains the parameters of
-/// each effect, by the id of the effect. The id of an effect is the id of a cause in the catalogue, or one of
-/// outside_ids().
-using Effect = std::map<std::string, double>;
-using Effects = std::map<std::string, Effect>;
+using Effect = worlds::Numbers;
+using worlds::Effects;
+using LogInput = worlds::Log;
+using LogOutput = worlds::Answer;
+using worlds::drop_unrecorded;
 
 struct Sensor {
   double noise_mm = 0.04;
   double step_mm = 0.01;
   double pressure_noise_kpa = 0.05;
-};
-
-/// Inputs of one log, one value per sample of the command.
-struct LogInput {
-  double rate_hz = 100;
-  std::vector<double> command_kpa;  // command [kPa], linear between samples
-  std::vector<double> temperature_c;
-  std::vector<double> supply_kpa;
-  // Run-to-run variation of this log, see variation.h.
-  double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // number of samples at the start that are simulated but not recorded
-  // Only in closed loop: a controller follows this reference from the first recorded sample on. `noise_mm` is
-  // the noise of the controller's sensor, one value per recorded sample.
-  std::vector<double> reference_mm, noise_mm;
-};
-
-struct LogOutput {
-  std::vector<double> command_kpa;      // command that was played [kPa]; in closed loop, the command of the
-                                        // controller
-  std::vector<double> pressure_kpa;     // true pressure at the actuator [kPa]
-  std::vector<double> displacement_mm;  // displacement [mm], without noise and quantisation
 };
 
 /// Simulates the logs of one campaign in order. Every log starts at rest. The largest load, the age and the
@@ -73,9 +53,6 @@ struct GaugeWork {
 /// campaign at which the check begins. Drift, disturbances and wrong samples continue during the check.
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
-
-/// Removes the samples of a log that are not recorded, from the inputs and the outputs.
-void drop_unrecorded(LogInput& in, LogOutput& out);
 
 /// Simulates the actuator without effects while the pressure rises to `pressure_kpa` and then falls. Returns
 /// the largest displacement.

@@ -116,19 +116,4 @@ std::vector<Log> draw_campaign(const Campaign& campaign) {
   return logs;
 }
 
-void drop_unrecorded(Log& log, Answer& answer) {
-  for (std::vector<double>* values :
-       {&log.command_kpa, &log.temperature_c, &log.supply_kpa, &log.reference_mm, &answer.command_kpa,
-        &answer.pressure_kpa, &answer.displacement_mm})
-    if (!values->empty())
-      values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(log.unrecorded));
-  log.unrecorded = 0;
-}
-
-double duration_s(const std::vector<Log>& logs) {
-  double sum = 0;
-  for (const Log& log : logs) sum += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
-  return sum;
-}
-
 }  // namespace textbook

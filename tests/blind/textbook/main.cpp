@@ -15,13 +15,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <limits>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 
 #include "own_physics.h"
@@ -56,57 +54,28 @@ double rate(const std::string& value) {
 
 Arguments arguments(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string key = argv[i];
-    bool flag = true;
-    if (key == "--poor")
-      a.runs = 1;
-    else if (key == "--closed-loop")
-      a.closed_loop = true;
-    else if (key == "--pressure")
-      a.pressure = true;
-    else if (key == "--no-temperature")
-      a.temperature = false;
-    else if (key == "--no-supply")
-      a.supply = false;
-    else if (key == "--list")
-      a.list = true;
-    else if (key == "--makes")
-      a.makes = true;
-    else
-      flag = false;
-    if (flag) continue;
-    if (i + 1 >= argc) throw std::invalid_argument("no value for " + key);
-    const std::string value = argv[++i];
-    if (key == "--seed")
-      a.seed = std::stoull(value);
-    else if (key == "--campaign")
-      a.campaign = std::stoull(value);
-    else if (key == "--out")
-      a.out = value;
-    else if (key == "--truth")
-      a.truth = value;
-    else if (key == "--make")
-      a.make = value;
-    else if (key == "--cause")
-      a.cause = value;
-    else if (key == "--strength")
-      a.strength = std::stod(value);
-    else if (key == "--runs")
-      a.runs = std::stoull(value);
-    else if (key == "--variation")
-      a.variation = std::stod(value);
-    else if (key == "--zero-mm")
-      a.zero_mm = std::stod(value);
-    else if (key == "--warmer-c")
-      a.warmer_c = std::stod(value);
-    else if (key == "--rate-hz")
-      a.rate_hz = rate(value);
-    else if (key == "--probe")
-      a.probe = value;
-    else
-      throw std::invalid_argument("unknown option " + key);
-  }
+  worlds::Options options;
+  options.flag("--poor", [&a] { a.runs = 1; });
+  options.flag("--closed-loop", a.closed_loop);
+  options.flag("--pressure", a.pressure);
+  options.flag("--no-temperature", a.temperature, false);
+  options.flag("--no-supply", a.supply, false);
+  options.flag("--list", a.list);
+  options.flag("--makes", a.makes);
+  options.value("--seed", a.seed);
+  options.value("--campaign", a.campaign);
+  options.value("--out", a.out);
+  options.value("--truth", a.truth);
+  options.value("--make", a.make);
+  options.value("--cause", a.cause);
+  options.value("--strength", a.strength);
+  options.value("--runs", a.runs);
+  options.value("--variation", a.variation);
+  options.value("--zero-mm", a.zero_mm);
+  options.value("--warmer-c", a.warmer_c);
+  options.value("--rate-hz", [&a](const std::string& text) { a.rate_hz = rate(text); });
+  options.value("--probe", a.probe);
+  options.read(argc, argv);
   return a;
 }
 
@@ -180,20 +149,8 @@ void write_truth(const Arguments& a, const textbook::World& world, const std::ma
     file << comma << "\"" << id << "\": " << size_mm;
     comma = ", ";
   }
-  file << "}, \"effects\": {";
-  comma = "";
-  for (const auto& [id, scaled] : hidden) {
-    file << comma << "\"" << id << "\": {\"excess_mm\": " << scaled.excess_mm
-         << ", \"reachable\": " << (scaled.reachable ? "true" : "false") << ", \"parameters\": {";
-    const char* inner = "";
-    for (const auto& [name, value] : scaled.numbers) {
-      file << inner << "\"" << name << "\": " << value;
-      inner = ", ";
-    }
-    file << "}}";
-    comma = ", ";
-  }
-  file << "}}\n";
+  file << "}, ";
+  worlds::write_effects(file, hidden);
   if (!file.flush()) throw std::runtime_error("cannot write " + a.truth);
 }
 
@@ -221,8 +178,7 @@ int run(const Arguments& a) {
   textbook::Effects effects;
   if (!a.cause.empty()) {
     const textbook::Excess excess(world, whole, a.seed);
-    std::stringstream ids(a.cause);
-    for (std::string id; std::getline(ids, id, ',');) {
+    for (const std::string& id : worlds::ids_in(a.cause)) {
       hidden[id] = excess.scaled(id, a.strength * noise_mm);
       effects[id] = hidden[id].numbers;
     }
@@ -245,10 +201,5 @@ int run(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(arguments(argc, argv));
-  } catch (const std::exception& error) {
-    std::cerr << "textbook-world: " << error.what() << "\n";
-    return 2;
-  }
+  return worlds::exit_code_of("textbook-world", [&] { return run(arguments(argc, argv)); });
 }

@@ -15,7 +15,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <random>
@@ -42,18 +41,11 @@ struct Arguments {
 
 Arguments arguments(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string key = argv[i], value = argv[i + 1];
-    if (key == "--seed")
-      a.seed = std::stoull(value);
-    else if (key == "--make")
-      a.make = value;
-    else if (key == "--fingers")
-      a.fingers = std::stoi(value);
-    else
-      throw std::invalid_argument("unknown option " + key);
-  }
-  if (argc % 2 == 0) throw std::invalid_argument("every option requires a value");
+  worlds::Options options;
+  options.value("--seed", a.seed);
+  options.value("--make", a.make);
+  options.value("--fingers", [&a](const std::string& text) { a.fingers = std::stoi(text); });
+  options.read(argc, argv);
   if (a.fingers < 1 || a.fingers > most_fingers) throw std::invalid_argument("1 to 4 fingers");
   return a;
 }
@@ -164,10 +156,5 @@ int run(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(arguments(argc, argv));
-  } catch (const std::exception& error) {
-    std::cerr << "textbook-rig: " << error.what() << "\n";
-    return 2;
-  }
+  return worlds::exit_code_of("textbook-rig", [&] { return run(arguments(argc, argv)); });
 }

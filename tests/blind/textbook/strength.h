@@ -8,6 +8,8 @@
 
 namespace textbook {
 
+using worlds::Scaled;
+
 /// Computes the part of a displacement change that a refit of the finger's parameters cannot explain. The
 /// refit uses a model that is linear in these parameters. Zero and gain have no bounds; every other parameter
 /// has bounds.
@@ -31,12 +33,6 @@ class Recalibration {
   std::vector<std::vector<double>> products_;  // scalar products of all pairs of directions
 };
 
-struct Scaled {
-  Numbers numbers;
-  double excess_mm = 0;
-  bool reachable = true;  // true: the unexplained error is within 15 % of the target
-};
-
 /// Computes the strength of an effect. The strength is the part of the displacement change by the effect that
 /// a refitted model cannot explain, as RMS [mm] over the campaign. In the refit, zero and gain have no
 /// bounds, and the parameters of the finger (own_numbers) stay within the bounds of its make. For a leak, the
@@ -47,7 +43,8 @@ class Excess {
   Excess(const World& world, const std::vector<Log>& logs, std::uint64_t seed);
   double of_mm(const Effects& effects) const;
   /// Returns the effect with the strength `target_mm` and the smallest possible amplitude. If no amplitude
-  /// has this strength, returns the effect with the nearest strength.
+  /// has this strength, returns the effect with the nearest strength. The result is reachable if its strength
+  /// is within 15 % of the target.
   Scaled scaled(const std::string& id, double target_mm) const;
 
  private:

@@ -3,34 +3,17 @@
 // campaign of logs. A seed determines all of them.
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "finger.h"
 #include "valve.h"
+#include "world_program.h"
 
 namespace textbook {
 
-using Numbers = std::map<std::string, double>;
-using Effects = std::map<std::string, Numbers>;
-
-struct Log {
-  double rate_hz = 100;
-  // Inputs of a log, one value per sample. supply_kpa is a gauge pressure.
-  std::vector<double> command_kpa, temperature_c, supply_kpa;
-  // Run-to-run variation of this log, see variation.h.
-  double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // number of samples at the start that are simulated but not recorded
-  // Only in closed loop: a controller follows this reference from the first recorded sample on. `noise_mm` is
-  // the noise of the controller's sensor, one value per recorded sample.
-  std::vector<double> reference_mm, noise_mm;
-};
-
-struct Answer {
-  // Outputs of a log: the played command, the pressure at the finger, and the displacement without noise.
-  std::vector<double> command_kpa, pressure_kpa, displacement_mm;
-};
+using worlds::Answer, worlds::Effects, worlds::Log, worlds::Numbers;
+using worlds::drop_unrecorded, worlds::duration_s;
 
 struct World {
   ValveNumbers valve;
@@ -49,10 +32,6 @@ struct Campaign {
 
 /// Draws logs with three kinds of commands in turn: triangles, steps, and sums of sines.
 std::vector<Log> draw_campaign(const Campaign& campaign);
-/// Removes the first `log.unrecorded` samples from a log and from its outputs. These samples are simulated,
-/// but the recording begins after them.
-void drop_unrecorded(Log& log, Answer& answer);
-double duration_s(const std::vector<Log>& logs);
 
 /// Simulates all logs. Every log starts at rest; the age, the drift and the largest load of the finger
 /// continue from log to log. The time step of the valve is 0.25 ms.
