@@ -252,25 +252,25 @@ drivers::SerialLine read_line(Context& context, MapReader& reader) {
   return line;
 }
 
+void read_board(Context& context, MapReader& reader, ModbusSettings settings, bool rtu) {
+  ModulesReader(context, settings, rtu).read(reader);
+  read_timing(context, reader);
+  check_waits(context);
+  context.rig.board = std::move(settings);
+}
+
 }  // namespace
 
 void read_modbus_tcp(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "modbus_tcp");
-  ModbusSettings settings;
-  ModulesReader(context, settings, false).read(reader);
-  read_timing(context, reader);
-  check_waits(context);
-  context.rig.board = std::move(settings);
+  read_board(context, reader, {}, false);
 }
 
 void read_modbus_rtu(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "modbus_rtu");
   ModbusSettings settings;
   settings.links.emplace_back(read_line(context, reader));
-  ModulesReader(context, settings, true).read(reader);
-  read_timing(context, reader);
-  check_waits(context);
-  context.rig.board = std::move(settings);
+  read_board(context, reader, std::move(settings), true);
 }
 
 }  // namespace softgrip::rig

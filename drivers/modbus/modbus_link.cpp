@@ -18,6 +18,7 @@
 #include "drivers/modbus/modbus_message.h"
 #include "drivers/modbus/modbus_rtu_link.h"
 #include "drivers/modbus/modbus_tcp_link.h"
+#include "drivers/modbus/tcp_socket.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -98,6 +99,19 @@ BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char*
     if (status != BusStatus::ok) return status;
   }
   return BusStatus::ok;
+}
+
+BusStatus ModbusLink::connect_over_tcp(const TcpAddress& address, Nanoseconds deadline) noexcept {
+  TcpConnection made = connect_tcp(address, deadline);
+  if (!made.socket) return refuse(made.status, "connecting", made.why);
+  ::modbus_set_socket(context_, made.socket.release());
+  return BusStatus::ok;
+}
+
+BusStatus ModbusLink::send_over_tcp(std::span<const std::uint8_t> frame) noexcept {
+  const int error = send_whole(descriptor(), frame);
+  if (error == 0) return BusStatus::ok;
+  return is_closed(error) ? ended("sending") : fail(BusStatus::disconnected, "sending", text_of_errno(error));
 }
 
 /// Closes the link after the board or gateway has closed the connection. A board that already serves its

@@ -85,6 +85,10 @@ class ModbusLink {
   BusStatus read_some(std::span<std::uint8_t> bytes, const char* what, std::size_t& got) noexcept;
   /// Closes the link, because the board or gateway has closed the connection.
   BusStatus ended(const char* what) noexcept;
+  /// Connects over TCP, and gives the socket to libmodbus.
+  BusStatus connect_over_tcp(const TcpAddress& address, Nanoseconds deadline) noexcept;
+  /// Sends a frame over TCP.
+  BusStatus send_over_tcp(std::span<const std::uint8_t> frame) noexcept;
   [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
 
   /// Text that detail() returns if bytes have arrived although no request was waiting for a response.

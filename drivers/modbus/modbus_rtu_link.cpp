@@ -18,7 +18,6 @@
 #include "base/text.h"
 #include "base/time.h"
 #include "drivers/modbus/serial_port.h"
-#include "drivers/modbus/tcp_socket.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -213,16 +212,12 @@ ModbusRtuTcpLink::ModbusRtuTcpLink(TcpAddress address)
       address_(std::move(address)) {}
 
 BusStatus ModbusRtuTcpLink::connect(Nanoseconds deadline) noexcept {
-  TcpConnection made = connect_tcp(address_, deadline);
-  if (!made.socket) return refuse(made.status, "connecting", made.why);
-  ::modbus_set_socket(context(), made.socket.release());
-  return listen(0, deadline);
+  const BusStatus status = connect_over_tcp(address_, deadline);
+  return status == BusStatus::ok ? listen(0, deadline) : status;
 }
 
 BusStatus ModbusRtuTcpLink::send(std::span<const std::uint8_t> frame, Nanoseconds) noexcept {
-  const int error = send_whole(descriptor(), frame);
-  if (error == 0) return BusStatus::ok;
-  return is_closed(error) ? ended("sending") : fail(BusStatus::disconnected, "sending", text_of_errno(error));
+  return send_over_tcp(frame);
 }
 
 Board::Budget ModbusRtuTcpLink::cost(std::span<const TransactionSize> transactions,

@@ -7,7 +7,6 @@
 
 #include "base/text.h"
 #include "drivers/modbus/mbap.h"
-#include "drivers/modbus/tcp_socket.h"
 
 namespace softgrip::drivers {
 
@@ -17,10 +16,7 @@ ModbusTcpLink::ModbusTcpLink(TcpAddress address)
     : ModbusLink(::modbus_new_tcp("127.0.0.1", 1), address.habits, true), address_(std::move(address)) {}
 
 BusStatus ModbusTcpLink::connect(Nanoseconds deadline) noexcept {
-  TcpConnection made = connect_tcp(address_, deadline);
-  if (!made.socket) return refuse(made.status, "connecting", made.why);
-  ::modbus_set_socket(context(), made.socket.release());
-  return BusStatus::ok;
+  return connect_over_tcp(address_, deadline);
 }
 
 std::size_t ModbusTcpLink::build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept {
@@ -40,9 +36,7 @@ BusStatus ModbusTcpLink::before_asking(Nanoseconds) noexcept {
 }
 
 BusStatus ModbusTcpLink::send(std::span<const std::uint8_t> frame, Nanoseconds) noexcept {
-  const int error = send_whole(descriptor(), frame);
-  if (error == 0) return BusStatus::ok;
-  return is_closed(error) ? ended("sending") : fail(BusStatus::disconnected, "sending", text_of_errno(error));
+  return send_over_tcp(frame);
 }
 
 ModbusReply ModbusTcpLink::judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
