@@ -63,11 +63,7 @@ constexpr auto panel_words = enum_table<PanelEvent::Kind, Words>({
 template <class Table, class Which>
 EventEntry entry_of(const Table& table, Which which) {
   const Words& words = table[which];
-  EventEntry entry;
-  entry.kind = words.kind;
-  entry.severity = words.severity;
-  entry.text = words.text;
-  return entry;
+  return event_of(std::string(words.kind), words.severity, 0, std::string(words.text));
 }
 
 using Sequence = control::PreparedSequence;
@@ -267,6 +263,15 @@ EventEntry describe(const Event& event, const std::vector<std::string>& channel_
   if (event.channel < channel_names.size()) entry.channel = channel_names[event.channel];
   telling.describe(event, sequence, entry);
   if (!entry.channel.empty()) entry.text = fmt::format("{}: {}", entry.channel, entry.text);
+  return entry;
+}
+
+EventEntry event_of(std::string kind, Severity severity, double time_s, std::string text) {
+  EventEntry entry;
+  entry.kind = std::move(kind);
+  entry.severity = severity;
+  entry.time_s = time_s;
+  entry.text = std::move(text);
   return entry;
 }
 

@@ -44,6 +44,8 @@ struct EventEntry {
 [[nodiscard]] EventEntry describe(const BusEvent& event);
 /// Describes an event of the digital lines.
 [[nodiscard]] EventEntry describe(const PanelEvent& event);
+/// Returns an event with a text of its own.
+[[nodiscard]] EventEntry event_of(std::string kind, Severity severity, double time_s, std::string text);
 /// Returns the name of a severity: "information", "warning" or "error".
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 

@@ -263,12 +263,7 @@ void Recorder::block() {
 }
 
 void Recorder::tell(const char* kind, Severity severity, std::string text) {
-  EventEntry entry;
-  entry.kind = kind;
-  entry.severity = severity;
-  entry.time_s = seconds(now_ - origin_);
-  entry.text = std::move(text);
-  events_.add(std::move(entry));
+  events_.add(event_of(kind, severity, seconds(now_ - origin_), std::move(text)));
 }
 
 void Recorder::show() {

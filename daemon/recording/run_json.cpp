@@ -1,5 +1,7 @@
 #include "daemon/recording/run_json.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 namespace softgrip::daemon {
@@ -11,17 +13,6 @@ using Json = nlohmann::ordered_json;
 /// Replaces bytes that are not UTF-8 in file names and messages, so that the file remains readable.
 std::string dump(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-Json json_of(const EventEntry& event) {
-  Json json{{"time_s", event.time_s}, {"kind", event.kind}, {"severity", name_of(event.severity)}};
-  if (!event.channel.empty()) json["channel"] = event.channel;
-  if (!event.code.empty()) json["code"] = event.code;
-  if (event.request != 0) json["request"] = event.request;
-  if (event.value != 0) json["value"] = event.value;
-  if (!event.parameters.empty()) json["parameters"] = parameters_json(event.parameters);
-  json["text"] = event.text;
-  return json;
 }
 
 Json json_of(const LoadedSequence& sequence, std::uint32_t request) {
@@ -38,6 +29,22 @@ Json json_of(const LoadedSequence& sequence, std::uint32_t request) {
 Json parameters_json(const std::vector<control::Argument>& parameters) {
   Json json = Json::object();
   for (const control::Argument& parameter : parameters) json[parameter.name] = parameter.value;
+  return json;
+}
+
+Json event_json(const EventEntry& event) {
+  Json json;
+  if (event.id != 0) json["id"] = event.id;
+  json["time_s"] = event.time_s;
+  json["kind"] = event.kind;
+  json["severity"] = name_of(event.severity);
+  if (!event.channel.empty()) json["channel"] = event.channel;
+  if (!event.code.empty()) json["code"] = event.code;
+  if (event.request != 0) json["request"] = event.request;
+  if (!event.client.empty()) json["client"] = event.client;
+  if (event.value != 0) json["value"] = std::isfinite(event.value) ? Json(event.value) : Json(nullptr);
+  if (!event.parameters.empty()) json["parameters"] = parameters_json(event.parameters);
+  json["text"] = event.text;
   return json;
 }
 
@@ -66,8 +73,8 @@ std::string run_json(const Provenance& provenance, const RunStory& story) {
   json["faults"] = Json::array();
   json["events"] = Json::array();
   for (const EventEntry& event : story.events) {
-    json["events"].push_back(json_of(event));
-    if (event.kind == "fault_latched") json["faults"].push_back(json_of(event));
+    json["events"].push_back(event_json(event));
+    if (event.kind == "fault_latched") json["faults"].push_back(event_json(event));
   }
   json["events_left_out"] = story.events_left_out;
   return dump(json);

@@ -58,6 +58,10 @@ struct RunStory {
 /// Returns the parameters of a sequence as an object: {"squeeze_kpa": 4}.
 [[nodiscard]] nlohmann::ordered_json parameters_json(const std::vector<control::Argument>& parameters);
 
+/// Returns an event as an object. Members that the event does not have are absent. An event of a recording
+/// has no id and no client.
+[[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);
+
 [[nodiscard]] std::string run_json(const Provenance& provenance, const RunStory& story);
 
 }  // namespace softgrip::daemon

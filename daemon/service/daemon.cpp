@@ -183,12 +183,7 @@ void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome) {
 }
 
 void DaemonParts::tell(const char* kind, Severity severity, std::string text) {
-  EventEntry entry;
-  entry.kind = kind;
-  entry.severity = severity;
-  entry.time_s = seconds(clock.now() - origin);
-  entry.text = std::move(text);
-  events.add(std::move(entry));
+  events.add(event_of(kind, severity, seconds(clock.now() - origin), std::move(text)));
 }
 
 bool reached_the_board(Ending ending) noexcept {

@@ -127,13 +127,10 @@ void Service::pump() {
   for (StampedEvent event; events_.pop(event);) process_event(event);
   const std::uint64_t dropped = shared_.events_dropped.load(std::memory_order_relaxed) + events_.lost();
   if (dropped != events_dropped_) {
-    EventEntry entry;
-    entry.kind = "events_lost";
-    entry.severity = Severity::warning;
-    entry.time_s = seconds(snapshot().at - origin_);
-    entry.text = fmt::format("{} events were lost, because events occurred faster than they could be stored.",
-                             dropped - events_dropped_);
-    log_.add(std::move(entry));
+    log_.add(
+        event_of("events_lost", Severity::warning, seconds(snapshot().at - origin_),
+                 fmt::format("{} events were lost, because events occurred faster than they could be stored.",
+                             dropped - events_dropped_)));
     events_dropped_ = dropped;
   }
 }

@@ -270,21 +270,6 @@ Json statistics_json(const StatusSources& sources, const std::vector<EventCount>
           {"events", json_of(events)}};
 }
 
-Json event_json(const EventEntry& event) {
-  Json json{{"id", event.id},
-            {"time_s", event.time_s},
-            {"kind", event.kind},
-            {"severity", name_of(event.severity)}};
-  if (!event.channel.empty()) json["channel"] = event.channel;
-  if (!event.code.empty()) json["code"] = event.code;
-  if (event.request != 0) json["request"] = event.request;
-  if (!event.client.empty()) json["client"] = event.client;
-  if (event.value != 0) json["value"] = number(event.value);
-  if (!event.parameters.empty()) json["parameters"] = parameters_json(event.parameters);
-  json["text"] = event.text;
-  return json;
-}
-
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -42,7 +42,6 @@ struct StatusSources {
 [[nodiscard]] nlohmann::ordered_json statistics_json(const StatusSources& sources,
                                                      const std::vector<EventCount>& events,
                                                      bool with_histograms);
-[[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);
 
 /// Returns the JSON as one line. Bytes that are not valid UTF-8 are replaced.
 [[nodiscard]] std::string line_of(const nlohmann::ordered_json& json);
