@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "tools/web/access/tokens.h"
+
 namespace softgrip::web {
 namespace {
 
@@ -16,11 +18,6 @@ constexpr std::string_view line_end = "\r\n";
 
 Frame refused(int status) {
   return {Frame::State::refused, 0, status};
-}
-
-bool is_header_name_character(char character) {
-  const auto within = [character](char first, char last) { return character >= first && character <= last; };
-  return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_';
 }
 
 bool is_printable(char character) {
@@ -73,7 +70,7 @@ int check_header(std::string_view line, Lengths& lengths) {
   const std::size_t colon = line.find(':');
   const std::string_view name = line.substr(0, std::min(colon, line.size()));
   if (colon == std::string_view::npos || name.empty() ||
-      !std::all_of(name.begin(), name.end(), is_header_name_character)) {
+      !std::all_of(name.begin(), name.end(), is_name_character)) {
     return 400;
   }
   std::string_view value = line.substr(colon + 1);

@@ -12,6 +12,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/web/access/tokens.h"
+
 namespace softgrip::web {
 
 namespace {
@@ -60,13 +62,7 @@ Descriptor open_folder_in(const Descriptor& parent, const std::string& name) {
 }  // namespace
 
 bool is_plain_name(std::string_view name) {
-  const auto allowed = [](char character) {
-    const auto within = [character](char first, char last) {
-      return character >= first && character <= last;
-    };
-    return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_' ||
-           character == '.';
-  };
+  const auto allowed = [](char character) { return is_name_character(character) || character == '.'; };
   return !name.empty() && name.size() <= longest_file_name && name.front() != '.' &&
          std::all_of(name.begin(), name.end(), allowed);
 }

@@ -17,11 +17,6 @@ namespace {
 constexpr std::size_t longest_file = 65536;
 constexpr const char* how_to_make = "to create a token, run `openssl rand -hex 24`";
 
-bool is_token_character(char character) {
-  const auto within = [character](char first, char last) { return character >= first && character <= last; };
-  return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_';
-}
-
 /// Removes the first word from the line and returns this word.
 std::string_view word_of(std::string_view& line) {
   const auto blank = [](char character) {
@@ -35,6 +30,11 @@ std::string_view word_of(std::string_view& line) {
 }
 
 }  // namespace
+
+bool is_name_character(char character) noexcept {
+  const auto within = [character](char first, char last) { return character >= first && character <= last; };
+  return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_';
+}
 
 bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept {
   // The duration of the comparison may show that the lengths are different, but it must not depend on the
@@ -61,7 +61,7 @@ tl::expected<Tokens, std::string> Tokens::parse(std::string_view text) {
     if (!word_of(line).empty())
       return tl::unexpected{fmt::format("line {}: unexpected text after the role and the token", number)};
     if (token.size() < shortest || token.size() > longest ||
-        !std::all_of(token.begin(), token.end(), is_token_character)) {
+        !std::all_of(token.begin(), token.end(), is_name_character)) {
       return tl::unexpected{fmt::format("line {}: a token has {} to {} letters, digits, - and _; {}", number,
                                         shortest, longest, how_to_make)};
     }

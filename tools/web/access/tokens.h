@@ -16,6 +16,10 @@ namespace softgrip::web {
 /// depend on the content.
 [[nodiscard]] bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept;
 
+/// Returns true for the characters of tokens, of names of headers and of file names: letters and digits of
+/// ASCII, "-" and "_".
+[[nodiscard]] bool is_name_character(char character) noexcept;
+
 /// The role of a token, and the position of the token in the token file.
 struct Grant {
   Role role = Role::none;  ///< role that the token gives; none: the token is not in the file
