@@ -5,6 +5,7 @@ The proxy uses the addresses of the shipped ADAM-6024 map: six inputs from 0, tw
 faults that it represents."""
 
 import contextlib
+import functools
 import math
 import random
 import select
@@ -118,6 +119,12 @@ class Session:
             raise ConnectionError("the board is gone")
         return reply
 
+    def execute(self, request):
+        """Sends a request to the board, records the values that it writes, and returns the reply."""
+        reply = self.ask_board(request)
+        self.proxy.note(request)
+        return reply
+
     def run(self):
         while not self.proxy.closed:
             request = self.read(self.client)
@@ -129,10 +136,8 @@ class Session:
             self.pass_on(request)
 
     def pass_on(self, request):
-        reply = self.ask_board(request)
-        self.proxy.note(request)
-        self.previous = reply
-        self.send(reply.bytes())
+        self.previous = self.execute(request)
+        self.send(self.previous.bytes())
 
     def wait_until_gone(self):
         """Stops sending messages in this session. Returns when the daemon closes the session."""
@@ -149,6 +154,17 @@ class Session:
 # Functions that disturb a request and its reply. A function returns True if it has handled the message, and False if
 # the fault does not apply to this message.
 
+def to_touched(disturb):
+    """Applies a function to each message that the fault must change. Other messages are not handled."""
+    @functools.wraps(disturb)
+    def handle(session, fault, request):
+        if not fault.touch():
+            return False
+        disturb(session, fault, request)
+        return True
+    return handle
+
+
 def noticeable(words, others):
     return any(abs(a - b) > TOLERATED_RAW for a, b in zip(words, others))
 
@@ -161,37 +177,27 @@ def lost_request(session, fault, request):
     return fault.touch()
 
 
+@to_touched
 def lost_reply(session, fault, request):
-    if not fault.touch():
-        return False
-    session.ask_board(request)
-    session.proxy.note(request)
-    return True
+    session.execute(request)
 
 
+@to_touched
 def delayed(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     time.sleep(fault.key("delay_s", 0.2))
     session.send(reply.bytes())
-    return True
 
 
+@to_touched
 def repeated(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request).bytes()
-    session.proxy.note(request)
+    reply = session.execute(request).bytes()
     session.send(reply + reply)
-    return True
 
 
 def replayed(session, fault, request):
     """Replies with old contents in a valid frame, like a gateway with a cache."""
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     if request.function == 4:
         old = fault.memory.setdefault((request.address(), len(reply.pdu)), bytes(reply.pdu))
         # Old sensor readings differ from new ones by noise only, so the daemon cannot detect them. However, the daemon
@@ -204,32 +210,25 @@ def replayed(session, fault, request):
     return True
 
 
+@to_touched
 def inserted(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     stranger = Frame(reply.bytes())
     stranger.transaction = (reply.transaction + 0x4000) & 0xFFFF
     session.send(stranger.bytes() + reply.bytes())
-    return True
 
 
+@to_touched
 def other_function(session, fault, request):
     """Replies with a valid answer to a different request."""
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     reply.pdu = bytearray(b"\x03\x04\x00\x00\x00\x00")
     session.send(reply.bytes())
-    return True
 
 
 def twin(session, fault, request):
     """Replies like a board of the same type that is at rest and vented. The messages have the correct format."""
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     if request.function == 4 and fault.touch():
         rest_mm = round((0 + 5) * RAW_PER_MM + HIGHEST_INPUT / 2)
         zero = round(HIGHEST_INPUT / 2)
@@ -241,121 +240,101 @@ def twin(session, fault, request):
     return True
 
 
+@to_touched
 def to_other_unit(session, fault, request):
-    if not fault.touch():
-        return False
     request.unit += 1
     reply = session.ask_board(request)
     reply.unit -= 1
     session.send(reply.bytes())
-    return True
 
 
+@to_touched
 def from_other_unit(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     reply.unit += 1
     session.send(reply.bytes())
-    return True
 
 
+@to_touched
 def out_of_order(session, fault, request):
     """Answers each request with the reply to the previous request."""
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     session.send((session.previous or reply).bytes())
     session.previous = reply
-    return True
 
 
+@to_touched
 def wrong_sequence(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     reply.transaction = (reply.transaction - 1) & 0xFFFF
     session.send(reply.bytes())
-    return True
 
 
+@to_touched
 def corrupted_header(session, fault, request):
     """Changes one bit of the first 8 bytes of the frame."""
-    if not fault.touch():
-        return False
-    raw = bytearray(session.ask_board(request).bytes())
-    session.proxy.note(request)
+    raw = bytearray(session.execute(request).bytes())
     bit = fault.random.randrange(64)
     raw[bit // 8] ^= 1 << (bit % 8)
     session.send(bytes(raw))
-    return True
 
 
-def changed_words(session, fault, request, change):
-    """Forwards the reply. If the request reads the inputs, `change` first changes the register values of the reply."""
-    reply = session.ask_board(request)
-    session.proxy.note(request)
-    if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
-        words = reply.words()
-        change(words)
-        reply.set_words([min(max(int(round(w)), 0), HIGHEST_INPUT) for w in words])
-    session.send(reply.bytes())
-    return True
+def to_inputs(change):
+    """Forwards all replies. If a request reads the inputs, `change` first changes the register values of the reply."""
+    @functools.wraps(change)
+    def handle(session, fault, request):
+        reply = session.execute(request)
+        if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
+            words = reply.words()
+            change(fault, words)
+            reply.set_words([min(max(int(round(w)), 0), HIGHEST_INPUT) for w in words])
+        session.send(reply.bytes())
+        return True
+    return handle
 
 
-def corrupted_value(session, fault, request):
+@to_inputs
+def corrupted_value(fault, words):
     """Changes one bit of the reading of the left finger's displacement."""
-    def change(words):
-        words[0] ^= 1 << fault.key("bit", 14)
-    return changed_words(session, fault, request, change)
+    words[0] ^= 1 << fault.key("bit", 14)
 
 
-def sensor_stuck(session, fault, request):
-    def change(words):
-        words[0] = fault.memory.setdefault("words", words[0])
-    return changed_words(session, fault, request, change)
+@to_inputs
+def sensor_stuck(fault, words):
+    words[0] = fault.memory.setdefault("words", words[0])
 
 
-def sensor_jump(session, fault, request):
-    def change(words):
-        words[0] += fault.key("by_mm", 15) * RAW_PER_MM
-    return changed_words(session, fault, request, change)
+@to_inputs
+def sensor_jump(fault, words):
+    words[0] += fault.key("by_mm", 15) * RAW_PER_MM
 
 
-def sensor_drift(session, fault, request):
-    def change(words):
-        words[0] += (time.monotonic() - fault.first_touch) * fault.key("mm_per_s", 0.5) * RAW_PER_MM
-    return changed_words(session, fault, request, change)
+@to_inputs
+def sensor_drift(fault, words):
+    words[0] += (time.monotonic() - fault.first_touch) * fault.key("mm_per_s", 0.5) * RAW_PER_MM
 
 
-def sensor_noise(session, fault, request):
-    def change(words):
-        words[0] += fault.random.gauss(0, fault.key("sigma_mm", 0.3)) * RAW_PER_MM
-    return changed_words(session, fault, request, change)
+@to_inputs
+def sensor_noise(fault, words):
+    words[0] += fault.random.gauss(0, fault.key("sigma_mm", 0.3)) * RAW_PER_MM
 
 
-def sensor_dropout(session, fault, request):
+@to_inputs
+def sensor_dropout(fault, words):
     """Removes the signal of the sensor from some of the readings."""
-    def change(words):
-        fault.memory["n"] = fault.memory.get("n", 0) + 1
-        if fault.memory["n"] % fault.key("every", 3) == 0:
-            words[0] = HIGHEST_INPUT / 2  # an input of 0 V, as from a broken wire
-    return changed_words(session, fault, request, change)
+    fault.memory["n"] = fault.memory.get("n", 0) + 1
+    if fault.memory["n"] % fault.key("every", 3) == 0:
+        words[0] = HIGHEST_INPUT / 2  # an input of 0 V, as from a broken wire
 
 
-def sensor_out_of_range(session, fault, request):
-    def change(words):
-        words[0] = HIGHEST_INPUT
-    return changed_words(session, fault, request, change)
+@to_inputs
+def sensor_out_of_range(fault, words):
+    words[0] = HIGHEST_INPUT
 
 
 def sensor_error(session, fault, request):
     """Sets the status word of the left input to `over` (over range)."""
-    reply = session.ask_board(request)
-    session.proxy.note(request)
+    reply = session.execute(request)
     if is_read_of(request, STATUS) and fault.touch():
         words = reply.words()
         words[0] = 1
@@ -364,39 +343,39 @@ def sensor_error(session, fault, request):
     return True
 
 
-def changed_write(session, fault, request, change):
-    if request.function != 16 or request.address() != OUTPUTS:
-        return False
-    words = request.written()
-    change(words)
-    if noticeable(words, request.written()):
-        fault.differs()
-    request.set_written(words)
-    session.pass_on(request)
-    return True
+def to_outputs(change):
+    """Applies `change` to the register values of each request that writes the outputs."""
+    @functools.wraps(change)
+    def handle(session, fault, request):
+        if request.function != 16 or request.address() != OUTPUTS:
+            return False
+        words = request.written()
+        change(fault, words)
+        if noticeable(words, request.written()):
+            fault.differs()
+        request.set_written(words)
+        session.pass_on(request)
+        return True
+    return handle
 
 
-def asymmetric(session, fault, request):
+@to_outputs
+def asymmetric(fault, words):
     """Changes the value for the left output. The value for the right output stays unchanged."""
-    def change(words):
-        words[0] = min(4095, round(words[0] + fault.key("by_kpa", 10) * RAW_PER_KPA))
-    return changed_write(session, fault, request, change)
+    words[0] = min(4095, round(words[0] + fault.key("by_kpa", 10) * RAW_PER_KPA))
 
 
-def received_by_some(session, fault, request):
+@to_outputs
+def received_by_some(fault, words):
     """Forwards the value for the right output. The left output keeps the value that it had at the beginning of the
     fault."""
-    def change(words):
-        words[0] = fault.memory.setdefault("word", words[0])
-    return changed_write(session, fault, request, change)
+    words[0] = fault.memory.setdefault("word", words[0])
 
 
+@to_touched
 def blocked(session, fault, request):
     """Simulates another sender on the line. It sends without a pause, so that no reply arrives."""
-    if not fault.touch():
-        return False
-    session.ask_board(request)
-    session.proxy.note(request)
+    session.execute(request)
     noise = Frame(struct.pack(">HHHB", 0x7FFF, 0, 5, 1) + b"\x04\x02\x00\x00").bytes()
     while not session.proxy.closed and session.proxy.fault is fault:
         session.send(noise * 8)
@@ -404,9 +383,8 @@ def blocked(session, fault, request):
     raise ConnectionError("the channel is free again")
 
 
+@to_touched
 def reset(session, fault, request):
-    if not fault.touch():
-        return False
     session.client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
     raise ConnectionError("reset")
 
@@ -423,48 +401,37 @@ def half_open(session, fault, request):
     return True
 
 
+@to_touched
 def silent(session, fault, request):
     """Keeps the sessions open and accepts new sessions, but answers no request."""
-    if not fault.touch():
-        return False
     session.wait_until_gone()
-    return True
 
 
+@to_touched
 def dripped(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request).bytes()
-    session.proxy.note(request)
+    reply = session.execute(request).bytes()
     for i in range(len(reply)):
         session.send(reply[i:i + 1])
         time.sleep(fault.key("interval_s", 0.02))
-    return True
 
 
+@to_touched
 def stalled(session, fault, request):
-    if not fault.touch():
-        return False
-    reply = session.ask_board(request).bytes()
-    session.proxy.note(request)
+    reply = session.execute(request).bytes()
     session.send(reply[:len(reply) // 2])
     session.wait_until_gone()
-    return True
 
 
+@to_touched
 def exception(session, fault, request):
     """Answers every request with a Modbus exception and executes no request."""
-    if not fault.touch():
-        return False
     request.pdu = bytearray([request.function | 0x80, fault.key("code", 4)])
     session.send(request.bytes())
-    return True
 
 
+@to_touched
 def refused(session, fault, request):
     """Closes all sessions, and closes new sessions immediately."""
-    if not fault.touch():
-        return False
     raise ConnectionError("refused")
 
 
