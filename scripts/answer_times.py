@@ -106,8 +106,7 @@ class Measurement(bench.BenchTest):
     def runTest(self):
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port, changes=((r"rate_hz: \d+", "rate_hz: 1000"),))
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         path = str(daemon.socket_path)
         print(f"{'':12}{'command':10}{'asked':>8}{'p50':>8}{'p99':>8}{'max ms':>9}   periods lost")
         for turn in range(4):

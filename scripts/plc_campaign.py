@@ -47,8 +47,7 @@ class Campaign(bench.BenchTest):
         self.start_master()
 
     def start_daemon(self):
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig_path)
         self.started_before = 0
 
     def start_gateway(self):

@@ -133,8 +133,7 @@ class Day(test_vacuum.Vacuum):
         self.mark("daemon killed")
         self.softgripd.kill()
         self.to_rest("a killed daemon")
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig_path)
 
     def end(self):
         self.hold()

@@ -76,8 +76,7 @@ def record(out):
             self.emulated = self.emulator("--object", "stone", "--faults", self.write("faults.yaml", (
                 "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: right}\n")))
             rig = self.rig(self.emulated.port, ((r"directory: \S+/runs", "directory: /tmp/softgrip-runs"),))
-            self.softgripd = self.daemon(rig)
-            self.softgripd.wait_for_state("idle")
+            self.softgripd = self.idle_daemon(rig)
             wide, narrow = self.watch(80, 24), self.watch(60, 30)
             self.softgripd.start("hand_over")
             bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])

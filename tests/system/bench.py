@@ -104,6 +104,15 @@ class Process:
     def running(self):
         return self.child.poll() is None
 
+    def listening_port(self):
+        """Waits until the process prints the address at which it listens, and returns the port."""
+        def port():
+            if not self.running():
+                raise AssertionError(f"{self.name} ended: {self.errors()}")
+            found = re.search(r"listening on (?:http://)?[\d.]+:(\d+)/?\n", self.output())
+            return found and found.group(1)
+        return int(wait_for(f"{self.name} to listen", port))
+
     def resident_kib(self):
         return resident_kib(self.child.pid)
 
@@ -137,14 +146,8 @@ class Emulator(Process):
         boards = ["--board", folder / f"config/boards/{board}.yaml"] if board else []
         super().__init__(name, [SOFTGRIP_RIG, "--model", folder / "config/models/bench_twin.yaml", *boards,
                                 "--tcp", port, "--control", self.control_path, *arguments], folder)
-        self.port = int(wait_for(f"{name} to listen: {self.errors()}", self._ready))
+        self.port = self.listening_port()
         self.control = Lines(self.control_path)
-
-    def _ready(self):
-        if not self.running():
-            raise AssertionError(f"{self.name} ended: {self.errors()}")
-        found = re.search(r"listening on [\d.]+:(\d+)\n", self.output())
-        return found and found.group(1)
 
     def ask(self, line):
         answer = self.control.ask(line)
@@ -234,6 +237,27 @@ class Daemon(Process):
         return [channel["result"] for channel in self.status()["channels"]]
 
 
+def write_rig(folder, name, new_name, changes):
+    """Writes a changed copy of a shipped rig file, with paths in the folder of the test. `changes` contains pairs
+    (pattern, replacement). Every pattern must occur in the file."""
+    text = (folder / "config" / name).read_text()
+    for pattern, replacement in (
+            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"),
+            (r"readback_cycles: \d+", "readback_cycles: 30"),
+            (r"max_missed_commands: \d+", "max_missed_commands: 30"),
+            (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
+            (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
+            (r"directory: /tmp/softgrip-runs", f"directory: {folder}/runs"),
+            (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock"),
+            *changes):
+        text, count = re.subn(pattern, replacement, text)
+        if count == 0:
+            raise AssertionError(f"{name} has no {pattern}")
+    path = folder / "config" / new_name
+    path.write_text(text)
+    return path
+
+
 class BenchTest(unittest.TestCase):
     """A test with its own folder, which contains the shipped configuration. When the test ends, its processes are
     ended."""
@@ -264,8 +288,7 @@ class BenchTest(unittest.TestCase):
         idle."""
         self.board = self.emulator("--object", "stone", *arguments)
         self.rig_path = self.rig(self.board.port)
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig_path)
 
     def write(self, name, text):
         path = self.folder / name
@@ -277,27 +300,12 @@ class BenchTest(unittest.TestCase):
         (pattern, replacement).
 
         The control rate is low and the time limits are long, so that a pause of a busy machine causes no fault."""
-        text = (self.folder / "config" / name).read_text()
-        for pattern, replacement in (
-                (r"port: \d+", f"port: {port}"),
-                (r"rate_hz: \d+", f"rate_hz: {RATE_HZ}"),
-                (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.15"),
-                (r"bus_down_cycles: \d+", f"bus_down_cycles: {BUS_DOWN_CYCLES}"),
-                (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"),
-                (r"readback_cycles: \d+", "readback_cycles: 30"),
-                (r"max_missed_commands: \d+", "max_missed_commands: 30"),
-                (r"max_age_s: [\d.]+", "max_age_s: 0.35"),
-                (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
-                (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
-                (r"directory: /tmp/softgrip-runs", f"directory: {self.folder}/runs"),
-                (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock"),
-                *changes):
-            text, count = re.subn(pattern, replacement, text)
-            if count == 0:
-                raise AssertionError(f"{name} has no {pattern}")
-        path = self.folder / "config" / "test_rig.yaml"
-        path.write_text(text)
-        return path
+        return write_rig(self.folder, name, "test_rig.yaml", (
+            (r"port: \d+", f"port: {port}"),
+            (r"rate_hz: \d+", f"rate_hz: {RATE_HZ}"),
+            (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.15"),
+            (r"bus_down_cycles: \d+", f"bus_down_cycles: {BUS_DOWN_CYCLES}"),
+            (r"max_age_s: [\d.]+", "max_age_s: 0.35"), *changes))
 
     def creep_faster(self):
         """Changes the finger of the shipped rigs, and its model, so that the creep of the finger decays within a few
@@ -317,6 +325,12 @@ class BenchTest(unittest.TestCase):
         process = Daemon(self.folder, rig, environment=environment)
         self.processes.append(process)
         self.addCleanup(process.lines.close)
+        return process
+
+    def idle_daemon(self, rig, environment=None):
+        """Starts the daemon and waits until it is idle."""
+        process = self.daemon(rig, environment)
+        process.wait_for_state("idle")
         return process
 
     def softgrip(self, *arguments, expect=0, timeout_s=30):

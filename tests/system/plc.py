@@ -39,13 +39,7 @@ class Plc(bench.Process):
         self.map = Map(path)
         super().__init__(name, [SOFTGRIP_PLC, "--config", path, "--port", port,
                                 "--socket", socket or folder / "softgripd.sock"], folder)
-        self.port = int(bench.wait_for(f"{name} to listen", self._ready))
-
-    def _ready(self):
-        if not self.running():
-            raise AssertionError(f"{self.name} ended: {self.errors()}")
-        found = re.search(r"listening on [\d.]+:(\d+)\n", self.output())
-        return found and found.group(1)
+        self.port = self.listening_port()
 
 
 def block(counter, command, recipe=0):

@@ -23,8 +23,7 @@ class QuietRigTest(bench.BenchTest):
                                      ("/tmp/softgrip.sock", f"{self.folder}/softgripd.sock")):
             text, count = re.subn(pattern, replacement, text)
             self.assertGreater(count, 0, pattern)
-        self.softgripd = self.daemon(self.write("config/quiet.yaml", text))
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.write("config/quiet.yaml", text))
         self.path = str(self.softgripd.socket_path)
 
     def running(self):

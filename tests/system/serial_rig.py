@@ -2,7 +2,6 @@
 long as on a real line. The board has no watchdog and no read-back."""
 
 import os
-import re
 import resource
 import threading
 import time
@@ -21,22 +20,10 @@ def board_priority():
 def rig_file(folder, rate_hz, *changes):
     """Writes a rig file with half of the highest possible control rate. The rate is low because a kernel thread
     transfers the bytes of a pseudo-terminal, and this thread has to wait on a busy machine."""
-    text = (folder / "config" / "rig_rtu.yaml").read_text()
-    for pattern, replacement in (
-            (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
-            (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.3"), (r"bus_down_cycles: \d+", "bus_down_cycles: 30"),
-            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"), (r"readback_cycles: \d+", "readback_cycles: 30"),
-            (r"max_missed_commands: \d+", "max_missed_commands: 30"), (r"max_age_s: [\d.]+", "max_age_s: 0.8"),
-            (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
-            (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
-            (r"directory: /tmp/softgrip-runs", f"directory: {folder}/runs"),
-            (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock"), *changes):
-        text, count = re.subn(pattern, replacement, text)
-        if count == 0:
-            raise AssertionError(f"rig_rtu.yaml has no {pattern}")
-    path = folder / "config" / "serial.yaml"
-    path.write_text(text)
-    return path
+    return bench.write_rig(folder, "rig_rtu.yaml", "serial.yaml", (
+        (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
+        (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.3"), (r"bus_down_cycles: \d+", "bus_down_cycles: 30"),
+        (r"max_age_s: [\d.]+", "max_age_s: 0.8"), *changes))
 
 
 class Shared(bench.Emulator):

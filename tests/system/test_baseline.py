@@ -178,8 +178,7 @@ class Baseline(bench.BenchTest):
     def test_a_board_that_softgripd_uses_is_rejected(self):
         board = self.emulator()
         rig = self.rig(board.port)
-        softgripd = self.daemon(rig)
-        softgripd.wait_for_state("idle")
+        softgripd = self.idle_daemon(rig)
         self.assertIn("softgripd runs", self.commissioned(rig, "--yes", expect=5).stderr)
         other = self.write("config/other.yaml", rig.read_text().replace("softgripd.sock", "other.sock"))
         self.assertIn(str(softgripd.child.pid), self.commissioned(other, "--yes", expect=5).stderr)

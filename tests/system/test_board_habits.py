@@ -73,8 +73,7 @@ class BoardHabits(bench.BenchTest):
         self.assertEqual(daemon.status()["state"], "starting")
         daemon.end()
         changes = [(r"connect_deadline_s: [\d.]+", "connect_deadline_s: 3\n    settle_s: 0.6")]
-        daemon = self.daemon(self.rig(emulator.port, changes))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port, changes))
         emulator.ask("clear it")
 
     def test_a_silent_board_is_used_within_0_5_s_of_its_first_response(self):
@@ -182,8 +181,7 @@ class BoardHabits(bench.BenchTest):
                 emulator = self.emulator("--faults", self.write("f.yaml", f"faults:\n  - {{name: it, kind: {kind}}}\n"),
                                          *arguments, board=board)
                 emulator.ask("fault it")
-                daemon = self.daemon(self.described(emulator.port, board, f"\n    {session}"))
-                daemon.wait_for_state("idle")
+                daemon = self.idle_daemon(self.described(emulator.port, board, f"\n    {session}"))
                 self.assertEqual(daemon.end(), 0)
 
     def check(self, session):

@@ -16,6 +16,12 @@ ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.S
 
 
 class BoardOwnership(bench.BenchTest):
+    def occupied_board(self):
+        """Returns an emulator, its rig file, and the idle daemon that drives it."""
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        return emulator, rig, self.idle_daemon(rig)
+
     def second_rig(self, rig):
         """Writes a second rig file with the same board and a different socket."""
         text = rig.read_text().replace("softgripd.sock", "second.sock")
@@ -24,20 +30,14 @@ class BoardOwnership(bench.BenchTest):
         return path
 
     def test_a_second_daemon_with_another_socket_is_rejected(self):
-        emulator = self.emulator()
-        rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        emulator, rig, daemon = self.occupied_board()
         second = bench.Process("second", [bench.SOFTGRIPD, "--config", self.second_rig(rig)], self.folder)
         self.assertEqual(second.wait(), 4)
         self.assertIn(f"another softgrip program drives this board (process {daemon.child.pid})", second.errors())
         self.assertEqual(daemon.status()["state"], "idle")
 
     def test_a_removed_socket_file_does_not_admit_a_second_daemon(self):
-        emulator = self.emulator()
-        rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        emulator, rig, daemon = self.occupied_board()
         daemon.socket_path.unlink()
         second = bench.Process("second", [bench.SOFTGRIPD, "--config", rig], self.folder)
         self.assertEqual(second.wait(), 4)
@@ -45,10 +45,7 @@ class BoardOwnership(bench.BenchTest):
         self.assertEqual(daemon.status()["state"], "idle")
 
     def test_a_removed_lock_file_does_not_admit_a_second_daemon(self):
-        emulator = self.emulator()
-        rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        emulator, rig, daemon = self.occupied_board()
         for folder in other_user.lock_folders():
             for lock in folder.glob(f"*{other_user.board_name(emulator.port)[len('.softgrip-'):]}*"):
                 lock.unlink()
@@ -63,10 +60,7 @@ class BoardOwnership(bench.BenchTest):
         self.assertEqual(self.daemon(rig).wait_for_state("idle")["state"], "idle")
 
     def test_doctor_and_safe_outputs_do_not_use_an_occupied_board(self):
-        emulator = self.emulator()
-        rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        emulator, rig, daemon = self.occupied_board()
         second = self.second_rig(rig)
         self.assertIn("another softgrip program", self.softgrip("doctor", "--rig", second, expect=6).stdout)
         safe = bench.Process("safe", [bench.SOFTGRIPD, "--config", second, "--safe-outputs"], self.folder)
@@ -78,8 +72,7 @@ class BoardOwnership(bench.BenchTest):
         rig = self.rig(emulator.port)
         for number in ENDING:
             with self.subTest(signal=signal.Signals(number).name):
-                daemon = self.daemon(rig)
-                daemon.wait_for_state("idle")
+                daemon = self.idle_daemon(rig)
                 daemon.start("pick_stone")
                 bench.wait_for("the approach", lambda: min(emulator.commands_kpa()) > 3, pause_s=0.005)
                 self.assertEqual(daemon.end(number), 0, daemon.errors())
@@ -87,8 +80,7 @@ class BoardOwnership(bench.BenchTest):
 
     def test_terminal_stop_signals_do_not_stop_the_daemon(self):
         emulator = self.emulator()
-        daemon = self.daemon(self.rig(emulator.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port))
         for number in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
             daemon.send(number)
         before = daemon.status()["loop"]["ticks"]
@@ -117,8 +109,7 @@ class OtherUsers(bench.BenchTest):
         for how, backlog in self.HOLDERS.items():
             with self.subTest(holder=how):
                 holder = other_user.OtherUser(self, self.name, backlog)
-                daemon = self.daemon(self.rig_path)
-                daemon.wait_for_state("idle")
+                daemon = self.idle_daemon(self.rig_path)
                 text = daemon.wait_for_event("board_lock")["text"]
                 self.assertIn("has no permission to control the board", text)
                 if backlog == 5:
@@ -128,8 +119,7 @@ class OtherUsers(bench.BenchTest):
 
     def test_a_second_daemon_is_rejected_although_another_user_holds_the_name(self):
         other_user.OtherUser(self, self.name)
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         second = self.rig_path.with_name("second.yaml")
         second.write_text(self.rig_path.read_text().replace("softgripd.sock", "second.sock"))
         other = bench.Process("second", [bench.SOFTGRIPD, "--config", second], self.folder)
@@ -141,8 +131,7 @@ class OtherUsers(bench.BenchTest):
     def test_safe_outputs_vent_after_a_kill_although_the_name_is_held(self):
         for how, backlog in self.HOLDERS.items():
             with self.subTest(holder=how):
-                daemon = self.daemon(self.rig_path)
-                daemon.wait_for_state("idle")
+                daemon = self.idle_daemon(self.rig_path)
                 daemon.start("pick_stone")
                 bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
                 daemon.kill()
@@ -154,8 +143,7 @@ class OtherUsers(bench.BenchTest):
                 holder.end()
 
     def test_safe_outputs_vent_although_another_user_holds_the_socket(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         daemon.start("pick_stone")
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
         daemon.kill()
@@ -167,8 +155,7 @@ class OtherUsers(bench.BenchTest):
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
     def test_safe_outputs_vent_although_a_stopped_daemon_holds_the_board(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         daemon.start("pick_stone")
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
         daemon.send(signal.SIGSTOP)
@@ -179,8 +166,7 @@ class OtherUsers(bench.BenchTest):
         daemon.kill()
 
     def test_a_daemon_of_another_user_is_rejected_while_root_uses_the_board(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         self.folder.chmod(0o777)
         own = pathlib.Path(f"/tmp/softgrip-{other_user.NOBODY}")
         self.addCleanup(lambda: own.is_dir() and own.rmdir())

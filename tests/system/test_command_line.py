@@ -134,8 +134,7 @@ class Online(bench.BenchTest):
     def setUp(self):
         super().setUp()
         self.emulated = self.emulator("--object", "stone")
-        self.softgripd = self.daemon(self.rig(self.emulated.port))
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig(self.emulated.port))
 
     def test_client_commands_start_observe_and_vent_a_grip(self):
         self.assertIn("idle", self.softgrip("status").stdout)

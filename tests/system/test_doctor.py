@@ -98,8 +98,7 @@ class Doctor(bench.BenchTest):
     def test_a_daemon_without_a_board_is_reported_as_one_failure(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         emulator.kill()
         daemon.wait_for_state("faulted")
         report, findings = self.doctor(rig, expect=6)
@@ -120,8 +119,7 @@ class Doctor(bench.BenchTest):
 
     def test_doctor_takes_the_rig_file_from_the_running_daemon(self):
         emulator = self.emulator()
-        daemon = self.daemon(self.rig(emulator.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port))
         report = json.loads(self.softgrip("doctor", "--json", expect=None).stdout)
         self.assertEqual(report["rig"], "bench")
         self.assertTrue(report["rig_file"].endswith("config/test_rig.yaml"), report["rig_file"])
@@ -138,8 +136,7 @@ class Doctor(bench.BenchTest):
     def test_doctor_asks_a_running_daemon_and_does_not_use_the_board(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         report, findings = self.doctor(rig, expect=None)
         self.assertTrue(report["daemon_runs"])
         self.assertEqual(findings["daemon"]["verdict"], "ok")

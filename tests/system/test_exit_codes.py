@@ -97,13 +97,34 @@ class Page(unittest.TestCase):
         self.assertEqual({row.split()[0] for row in exit_codes.table()} & commands, commands)
 
 
-class FileCommands(bench.BenchTest):
-    """Tests the commands that read and write files."""
+class EndingsTest(bench.BenchTest):
+    """Runs commands and compares their exit codes with the table."""
 
     def setUp(self):
         super().setUp()
         self.table = exit_codes.table()
         self.runner = Runner(self.folder)
+
+    def ended(self, done, cell, number=None):
+        said = "" if done.stderr is None else done.stderr.decode(errors="replace")[-1500:]
+        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{said}")
+
+    def full_disk(self):
+        disk = FullDisk(self.folder / "full")
+        self.addCleanup(disk.close)
+        return disk
+
+    def run_onto(self, disk, line):
+        """Runs a command whose standard output is a file on the full disk."""
+        with open(disk.folder / "output", "ab") as output:
+            return self.runner.run(line, stdout=output, preexec_fn=disk.limit)
+
+
+class FileCommands(EndingsTest):
+    """Tests the commands that read and write files."""
+
+    def setUp(self):
+        super().setUp()
         self.write("bad.csv", "nothing\nthat,is\na,log\n")
         self.write("bad.yaml", "name: bad\nvalve: 3\n")
         for folder in ("spoilt", "out"):
@@ -121,10 +142,6 @@ class FileCommands(bench.BenchTest):
 
     def each(self, ending, check):
         exit_codes.each(self, FILE_COMMANDS, ending, check)
-
-    def ended(self, done, cell, number=None):
-        said = "" if done.stderr is None else done.stderr.decode(errors="replace")[-1500:]
-        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{said}")
 
     @NEEDS_SHIM
     def test_a_successful_command_replaces_its_output_files_atomically(self):
@@ -169,8 +186,7 @@ class FileCommands(bench.BenchTest):
         self.assertEqual([path for path in (self.folder / "out").rglob("*") if path.is_file()], [])
 
     def test_a_full_disk_ends_a_command_with_the_listed_code(self):
-        disk = FullDisk(self.folder / "full")
-        self.addCleanup(disk.close)
+        disk = self.full_disk()
         def put_an_old_file(name, command, _):
             path = disk.folder / (command.writes or "output")
             path.parent.mkdir(exist_ok=True)
@@ -189,8 +205,7 @@ class FileCommands(bench.BenchTest):
                     self.assertRegex(done.stderr.decode(), NO_SPACE, line)
                 self.assertEqual(path.read_text() if path.exists() else "", "" if command.new else "old\n", name)
             else:
-                with open(path, "ab") as output:
-                    done = self.runner.run(command.done, stdout=output, preexec_fn=disk.limit)
+                done = self.run_onto(disk, command.done)
                 self.ended(done, cell)
                 self.assertIn("cannot write to the standard output: ", done.stderr.decode())
 
@@ -208,14 +223,12 @@ class FileCommands(bench.BenchTest):
         self.each("closed pipe", check)
 
 
-class Clients(bench.BenchTest):
+class Clients(EndingsTest):
     """Tests the commands that send requests to the daemon."""
 
     def setUp(self):
         super().setUp()
-        self.table = exit_codes.table()
         self.start_rig()
-        self.runner = Runner(self.folder)
         self.write("short.yaml", SHORT)
 
     def ready_for(self, name):
@@ -238,9 +251,6 @@ class Clients(bench.BenchTest):
 
     def each(self, ending, check):
         exit_codes.each(self, CLIENTS, ending, check)
-
-    def ended(self, done, cell, number=None):
-        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{done.stderr.decode()[-1500:]}")
 
     def test_a_successful_client_exits_with_the_listed_code(self):
         def check(name, command, cell):
@@ -291,14 +301,12 @@ class Clients(bench.BenchTest):
         self.each("fault", check)
 
     def test_a_full_disk_ends_a_client_with_the_listed_code(self):
-        disk = FullDisk(self.folder / "full")
-        self.addCleanup(disk.close)
+        disk = self.full_disk()
         disk.fill()
         def check(name, command, cell):
             self.settle()
             self.ready_for(name)
-            with open(disk.folder / "output", "ab") as output:
-                done = self.runner.run(command.done, stdout=output, preexec_fn=disk.limit)
+            done = self.run_onto(disk, command.done)
             self.ended(done, cell)
             self.assertIn("standard output", done.stderr.decode())
             self.carried_out(name)
@@ -323,18 +331,16 @@ class Clients(bench.BenchTest):
             self.softgripd.wait_for_event("sequence_finished", since=self.since)
 
 
-class Motion(bench.BenchTest):
+class Motion(EndingsTest):
     """Tests the commands that move a rig. After any ending of a command, the outputs must be safe."""
 
     def setUp(self):
         super().setUp()
-        self.table = exit_codes.table()
         self.write("short.yaml", SHORT)
         self.write("bad.yaml", "name: bad\nvalve: 3\n")
         (self.folder / "out").mkdir()
         self.faults = self.write("faults.yaml", "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
         self.use_rested_fingers()
-        self.runner = Runner(self.folder)
         self.count = 0
 
     def use_rested_fingers(self, name="softgrip-rig"):
@@ -352,9 +358,6 @@ class Motion(bench.BenchTest):
         self.count += 1
         (self.folder / out / str(self.count)).mkdir()
         return command.done.format(rig=self.rig_path, out=f"{out}/{self.count}")
-
-    def ended(self, done, cell, number=None):
-        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{done.stderr.decode()[-1500:]}")
 
     def check_safe(self, name):
         self.assertLess(max(self.board.commands_kpa()), 0.1, f"{name} has ended, and a finger is under pressure")
@@ -419,11 +422,6 @@ class Motion(bench.BenchTest):
 
         self.each("done", check, without=LONG)
 
-    def full_disk(self):
-        disk = FullDisk(self.folder / "full")
-        self.addCleanup(disk.close)
-        return disk
-
     def test_a_full_disk_ends_a_motion_with_the_listed_code(self):
         disk = self.full_disk()
         lines = {name: self.line(command, "full") for name, command in MOTION.items()}
@@ -436,8 +434,7 @@ class Motion(bench.BenchTest):
                 done = self.runner.run(lines[name], preexec_fn=disk.limit)
                 self.assertRegex(done.stderr.decode(), NO_SPACE)
             else:
-                with open(disk.folder / "output", "ab") as output:
-                    done = self.runner.run(lines[name], stdout=output, preexec_fn=disk.limit)
+                done = self.run_onto(disk, lines[name])
                 self.assertIn("standard output", done.stderr.decode())
             self.ended(done, cell)
             self.check_safe(name)

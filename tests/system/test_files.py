@@ -269,34 +269,34 @@ class OtherFiles(bench_files.Files):
             file.create_dataset("run/displacement_mm", (50,), "f8", external=[(str(self.secret), 0, 400)])
         self.refused("a.h5", "external storage")
 
-    def test_an_hdf5_external_link_is_rejected(self):
-        h5py = self.h5py()
-        with h5py.File(self.folder / "other.h5", "w") as file:
+    def other_hdf5(self):
+        """Writes a second file with readings and returns its path."""
+        with self.h5py().File(self.folder / "other.h5", "w") as file:
             file["data"] = [float(i) for i in range(50)]
+        return str(self.folder / "other.h5")
+
+    def test_an_hdf5_external_link_is_rejected(self):
+        h5py, other = self.h5py(), self.other_hdf5()
         with h5py.File(self.folder / "a.h5", "w") as file:
             self.columns(file)
-            file["displacement_mm"] = h5py.ExternalLink(str(self.folder / "other.h5"), "data")
+            file["displacement_mm"] = h5py.ExternalLink(other, "data")
         self.refused("a.h5", "external link")
 
     def test_a_soft_link_through_an_external_link_is_not_followed(self):
-        h5py = self.h5py()
-        with h5py.File(self.folder / "other.h5", "w") as file:
-            file["data"] = [float(i) for i in range(50)]
+        h5py, other = self.h5py(), self.other_hdf5()
         with h5py.File(self.folder / "a.h5", "w") as file:
             self.columns(file)
             file["displacement_mm"] = h5py.SoftLink("/#hidden/data")  # a list of columns does not show names that
                                                                       # contain #
-            file["#hidden"] = h5py.ExternalLink(str(self.folder / "other.h5"), "/")
+            file["#hidden"] = h5py.ExternalLink(other, "/")
         said = self.limited("import", "a.h5", "--yes", "--out", "stolen.csv", code=3)
         self.assertIn("no column looks like a displacement", said)
         self.assertFalse((self.folder / "stolen.csv").exists())
 
     def test_an_hdf5_virtual_dataset_is_rejected(self):
-        h5py = self.h5py()
-        with h5py.File(self.folder / "other.h5", "w") as file:
-            file["data"] = [float(i) for i in range(50)]
+        h5py, other = self.h5py(), self.other_hdf5()
         layout = h5py.VirtualLayout((50,), "f8")
-        layout[:] = h5py.VirtualSource(str(self.folder / "other.h5"), "data", (50,))
+        layout[:] = h5py.VirtualSource(other, "data", (50,))
         with h5py.File(self.folder / "a.h5", "w") as file:
             self.columns(file)
             file.create_virtual_dataset("displacement_mm", layout)

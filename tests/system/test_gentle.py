@@ -31,8 +31,7 @@ class Gentle(bench.BenchTest):
         self.at_mm = 3
         truth = pathlib.Path(self.folder / "truth.csv")
         emulated = self.emulator("--object", f"{self.at_mm}:0.02", "--truth", truth)
-        daemon = self.daemon(self.rig(emulated.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulated.port))
         daemon.start("pick_stone")
         self.assertEqual(daemon.wait_for_event("contact")["code"], "grip")
         self.assertEqual(daemon.wait_for_event("sequence_finished")["code"], "done")
@@ -47,8 +46,7 @@ class Gentle(bench.BenchTest):
 
     def test_a_release_request_ends_the_hold(self):
         emulated = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(emulated.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulated.port))
         self.softgrip("release", expect=5)
         daemon.start("hand_over")
         daemon.wait_for_event("grip_result", code="HOLDING")

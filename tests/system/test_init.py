@@ -127,8 +127,7 @@ class Init(bench.BenchTest):
             self.assertIn(old, text)
             text = text.replace(old, new)
         rig.write_text(text)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", channel="left", code="HOLDING")
 

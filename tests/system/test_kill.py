@@ -14,8 +14,7 @@ WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
 class Kill(bench.BenchTest):
     def test_the_board_vents_after_a_kill_and_the_recording_is_readable(self):
         emulator = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(emulator.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port))
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
         began = daemon.wait_for_event("recording_started")["time_s"]
@@ -42,13 +41,11 @@ class Kill(bench.BenchTest):
     def test_a_new_daemon_after_a_kill_is_vented_and_idle(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         daemon.start("track_sine")
         bench.wait_for("pressure", lambda: min(emulator.commands_kpa()) > 5)
         daemon.kill()
-        again = self.daemon(rig)
-        again.wait_for_state("idle")
+        again = self.idle_daemon(rig)
         for _ in range(20):
             self.assertLess(max(emulator.commands_kpa()), 0.1)
             time.sleep(0.05)
@@ -60,13 +57,11 @@ class Kill(bench.BenchTest):
         self.creep_faster()
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
         daemon.kill()
-        again = self.daemon(rig)
-        again.wait_for_state("idle")
+        again = self.idle_daemon(rig)
         bench.wait_for("creep that has gone", lambda: max(c["displacement_mm"] for c in emulator.status()["channels"]) < 3)
 
         def grip():

@@ -109,8 +109,7 @@ class Metrics(web.WebTest):
         self.softgripd.kill()
         bench.wait_for("0 without the daemon", lambda: prometheus.value("softgrip_up") == 0)
         self.assertIsNone(prometheus.value("softgrip_displacement_meters"))
-        again = self.daemon(self.rig_path)
-        again.wait_for_state("idle")
+        again = self.idle_daemon(self.rig_path)
         bench.wait_for("the next daemon", lambda: prometheus.value("softgrip_up") == 1)
         bench.wait_for("its own counts", lambda: prometheus.value(lost) == 0)
 

@@ -9,8 +9,7 @@ import bench
 class Pick(bench.BenchTest):
     def run_pick(self, *emulator_arguments, sequence="pick_stone"):
         self.rig_process = self.emulator(*emulator_arguments)
-        daemon = self.daemon(self.rig(self.rig_process.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(self.rig_process.port))
         daemon.start(sequence)
         return daemon
 
@@ -75,8 +74,7 @@ class Pick(bench.BenchTest):
 
     def test_start_with_wait_prints_the_result_and_sets_the_exit_code(self):
         self.rig_process = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(self.rig_process.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(self.rig_process.port))
         done = self.softgrip("start", "--wait", "config/sequences/pick_stone.yaml", timeout_s=60)
         self.assertIn("HOLDING", done.stdout)
         self.rig_process.ask("object out")

@@ -86,8 +86,7 @@ class Served(bench.BenchTest):
                                       "lock_memory: false}")):
             text, count = re.subn(pattern, replacement, text)
             self.assertEqual(count, 1, pattern)
-        self.softgripd = self.daemon(self.write("config/served.yaml", text))
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.write("config/served.yaml", text))
 
     def test_a_planned_sequence_starts(self):
         self.softgrip("start", "track_sine")

@@ -19,8 +19,7 @@ class PlantFaults(bench.BenchTest):
     def tracking(self, changes=()):
         """Starts a daemon with a sequence in which both fingers track a sine."""
         self.emulated = self.emulator("--faults", self.write("faults.yaml", FAULTS))
-        daemon = self.daemon(self.rig(self.emulated.port, changes))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(self.emulated.port, changes))
         daemon.start("track_sine")
         daemon.wait_for_event("step_started", code="1")
         return daemon
@@ -61,8 +60,7 @@ class PlantFaults(bench.BenchTest):
 
     def test_a_slipping_part_is_not_reported_as_an_unsteady_reading(self):
         emulated = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(emulated.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulated.port))
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", code="HOLDING")
         for place in ("13:0.1", "14:0.1", "12:0.1"):

@@ -39,8 +39,7 @@ class Pymodbus(bench.BenchTest):
 
     def test_a_stone_is_held_and_released(self):
         self.serve("12")
-        daemon = self.daemon(self.rig(self.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(self.port))
         daemon.start("pick_stone")
         self.assertEqual(daemon.wait_for_event("sequence_finished")["code"], "done", daemon.errors())
         told = [(event["channel"], event["code"]) for event in daemon.events() if event["kind"] == "grip_result"]
@@ -49,8 +48,7 @@ class Pymodbus(bench.BenchTest):
 
     def test_a_sequence_runs_to_its_end(self):
         self.serve()
-        daemon = self.daemon(self.rig(self.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(self.port))
         path = self.write("config/sequences/move.yaml", MOVE)
         daemon.start("move")
         highest_mm = 0

@@ -109,8 +109,7 @@ class Python(bench.BenchTest):
         self.assertEqual(self.softgripd.end(), 0)
         with self.assertRaises(softgrip.ConnectionLost):
             gripper.wait(timeout_s=PATIENCE_S)
-        again = self.daemon(self.rig_path)
-        again.wait_for_state("idle")
+        again = self.idle_daemon(self.rig_path)
         gripper.reconnect()
         self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.FAULTED)
         # The finger creeps back after the grip. The daemon could interpret this creep as contact with a part, so it

@@ -14,8 +14,7 @@ class Recordings(bench.BenchTest):
         """Records a grip, a pause of the process, an acknowledgement, and a second grip. The pause is longer than the
         time-out of the board's watchdog."""
         emulator = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(emulator.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port))
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
         daemon.send(signal.SIGSTOP)

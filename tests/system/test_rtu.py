@@ -32,8 +32,7 @@ class Line(bench.BenchTest):
     def test_a_stone_is_held(self):
         rig = self.line_rig()
         self.line_emulator(rig, "--object", "stone")
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         daemon.start("pick_stone")
         for channel in ("left", "right"):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
@@ -57,8 +56,7 @@ class Line(bench.BenchTest):
         faults = self.write("faults.yaml", "faults:\n  - {name: unplugged, kind: disconnect}\n")
         rig = self.line_rig()
         emulator = self.line_emulator(rig, "--faults", faults)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         emulator.ask("fault unplugged")
         bench.wait_for("the removal of the device name", lambda: not (self.folder / "line").is_symlink())
         daemon.wait_for_state("faulted")

@@ -17,8 +17,7 @@ class SafeOutputs(bench.BenchTest):
         self.rig_ = self.rig(self.emulator_.port)
 
     def hold(self):
-        daemon = self.daemon(self.rig_)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_)
         daemon.start("pick_stone")
         daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
         return daemon
@@ -70,8 +69,7 @@ class EditedRig(bench.BenchTest):
         self.rig_path = self.rig(self.board.port)
 
     def under_pressure(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         daemon.start("pick_stone")
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
         return daemon
@@ -138,8 +136,7 @@ class EditedRig(bench.BenchTest):
         self.assertEqual(max(again.commands_kpa()), 0)
 
     def test_the_rig_file_is_read_after_a_normal_end(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         self.assertEqual(daemon.end(signal.SIGTERM), 0)
         self.rig_path.write_text("name: half")
         self.safe_outputs(0, SERVICE_RESULT="success")
@@ -154,8 +151,7 @@ class Hold(bench.BenchTest):
         """Ends a daemon while it holds a part. Returns the output of the check, the output of the daemon, and the
         outputs of the board 1 s later."""
         check = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True, check=True)
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         start = daemon.errors()
         daemon.start("pick_stone")
         for channel in ("left", "right"):

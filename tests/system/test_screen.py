@@ -12,8 +12,7 @@ class Screen(bench.BenchTest):
         super().setUp()
         self.emulated = self.emulator("--object", "stone", "--faults", self.write("faults.yaml", (
             "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
-        self.softgripd = self.daemon(self.rig(self.emulated.port))
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig(self.emulated.port))
 
     def hold(self):
         self.softgripd.start("hand_over")

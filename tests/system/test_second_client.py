@@ -54,8 +54,7 @@ class SecondClient(bench.BenchTest):
         """Kills the daemon. The requests of the second client then prevent a watchdog trip, so the pressure remains. A
         dead daemon cannot vent, so the daemon must warn of the second client while it runs."""
         emulator = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(emulator.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port))
         self.assertNotIn("another_client", [event["kind"] for event in daemon.events()])
         reader = self.reader(emulator.port)
         told = daemon.wait_for_event("another_client")
@@ -88,8 +87,7 @@ class SecondClient(bench.BenchTest):
         rig = self.rig(emulator.port)
         self.reader(emulator.port)
         self.assertEqual(self.doctor(rig)["watchdog"]["verdict"], "ok")
-        daemon = self.daemon(rig)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(rig)
         daemon.start("track_sine")
         bench.wait_for("pressure", lambda: min(emulator.commands_kpa()) > 5)
         self.assertNotIn("another_client", [event["kind"] for event in daemon.events()])

@@ -124,8 +124,7 @@ class WithADaemon(bench.BenchTest):
     def setUp(self):
         super().setUp()
         self.rig_path = simulated_rig(self.folder)
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig_path)
 
     def test_the_sequence_list_states_parameters_and_problems(self):
         self.write("config/sequences/broken.yaml", "name: broken\nstep: []\n")

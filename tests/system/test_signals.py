@@ -76,15 +76,13 @@ class Interrupted(bench.BenchTest):
         self.assertEqual(max(self.board.commands_kpa()), 0)
 
     def test_an_interrupted_watch_with_a_count_ends_by_the_signal(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         watch = self.process(bench.SOFTGRIP, "watch", "--count", "100000", "--socket", daemon.socket_path)
         bench.wait_for("updates", lambda: watch.output().count("\n") > 2)
         self.assertEqual(watch.end(signal.SIGINT), -signal.SIGINT)
 
     def test_an_interrupted_daemon_or_watch_without_limit_exits_with_code_0(self):
-        daemon = self.daemon(self.rig_path)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_path)
         watch = self.process(bench.SOFTGRIP, "watch", "--socket", daemon.socket_path)
         bench.wait_for("updates", lambda: watch.output().count("\n") > 2)
         self.assertEqual(watch.end(signal.SIGINT), 0)

@@ -58,8 +58,7 @@ class SocketApi(bench.BenchTest):
         self.rig_path = self.rig(self.board.port, changes=(
             ("sequence_directory: sequences",
              f'sequence_directory: sequences, read_only: {{path: {self.look}, mode: "0666"}}'),))
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig_path)
 
     def client(self, name=None, path=None):
         client = Client(path or self.softgripd.socket_path)
@@ -168,8 +167,7 @@ class SocketApi(bench.BenchTest):
         self.assertEqual(self.softgripd.end(), 0)
         # A new daemon numbers its events from one. A client must therefore receive all events of the new daemon,
         # regardless of the events that it has received from the previous daemon.
-        again = self.daemon(self.rig_path)
-        again.wait_for_state("idle")
+        again = self.idle_daemon(self.rig_path)
         third = self.client("watcher")
         new = third.ask("subscribe", since=seen[-1]["id"], started_at=begun["started_at"])["result"]
         self.assertEqual(new["since"], 0)
@@ -225,8 +223,7 @@ class Thermometer(bench.BenchTest):
             text = text.replace(old, new, 1)
         rig = self.folder / "config/warm.yaml"
         rig.write_text(text)
-        softgripd = self.daemon(rig)
-        softgripd.wait_for_state("idle")
+        softgripd = self.idle_daemon(rig)
         temperatures = [channel["temperature_c"] for channel in softgripd.status()["channels"]]
         self.assertAlmostEqual(temperatures[0], 31, delta=0.1)
         self.assertAlmostEqual(temperatures[1], 20, delta=0.1)

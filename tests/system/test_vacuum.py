@@ -18,8 +18,7 @@ class Vacuum(bench.BenchTest):
         self.rig_path = self.vacuum_rig(1502)
         self.board = self.emulator("--rig", self.rig_path, *arguments, board=None)
         self.rig_path = self.vacuum_rig(self.board.port)
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig_path)
 
     def vacuum_rig(self, port):
         return self.rig(port, name="vacuum/rig_tcp.yaml",

@@ -51,8 +51,7 @@ class VentsUnderAttack(bench.BenchTest):
     def setUp(self):
         super().setUp()
         self.board = self.emulator("--object", "stone")
-        self.daemon_ = self.daemon(self.rig(self.board.port))
-        self.daemon_.wait_for_state("idle")
+        self.daemon_ = self.idle_daemon(self.rig(self.board.port))
         self.stop_ = threading.Event()
         self.addCleanup(self.stop_.set)
 
@@ -290,8 +289,7 @@ class Ending(bench.BenchTest):
 class AnotherModbusClient(bench.BenchTest):
     def test_another_modbus_client_causes_fault_f304_and_a_vent(self):
         emulator = self.emulator("--object", "stone")
-        daemon = self.daemon(self.rig(emulator.port))
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig(emulator.port))
         daemon.start("pick_stone")
         for channel in ("left", "right"):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)

@@ -14,8 +14,7 @@ class Watch(bench.BenchTest):
         self.emulated = self.emulator("--object", "stone", "--faults", self.write("faults.yaml", (
             "faults:\n"
             "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
-        self.softgripd = self.daemon(self.rig(self.emulated.port))
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig(self.emulated.port))
 
     def watch(self, *arguments, columns=80, rows=24):
         program = [bench.SOFTGRIP, "watch", "--socket", self.softgripd.socket_path, *arguments]

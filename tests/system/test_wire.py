@@ -9,8 +9,7 @@ class Wire(bench.BenchTest):
         """Starts a daemon and waits until both fingers hold a stone."""
         self.rig_process = self.emulator("--object", "stone", *emulator_arguments)
         self.rig_file = self.rig(self.rig_process.port, changes)
-        daemon = self.daemon(self.rig_file)
-        daemon.wait_for_state("idle")
+        daemon = self.idle_daemon(self.rig_file)
         daemon.start("pick_stone")
         for channel in ("left", "right"):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)

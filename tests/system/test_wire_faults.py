@@ -29,8 +29,7 @@ class WireFaults(bench.BenchTest):
             lines.append(f"  - {{name: {kind}_lasting, kind: {kind}{more}}}")
         lines.append("  - {name: repeated_reply_once, kind: repeated_reply, replies: 1}")
         self.emulated = self.emulator("--faults", self.write("faults.yaml", "\n".join(lines) + "\n"))
-        self.softgripd = self.daemon(self.rig(self.emulated.port))
-        self.softgripd.wait_for_state("idle")
+        self.softgripd = self.idle_daemon(self.rig(self.emulated.port))
 
     def fresh_readings(self):
         def fresh():

@@ -1,7 +1,6 @@
 """Runs a softgrip-web process together with the other processes of a test."""
 
 import json
-import re
 import urllib.error
 import urllib.request
 
@@ -26,14 +25,8 @@ class Web(bench.Process):
             f"listen: {{address: 127.0.0.1, port: {port}, max_connections: {most}}}\n"
             f"access:\n  tokens: {tokens}\n  {access}\nrecordings: {folder}/runs\n")
         super().__init__(name, [SOFTGRIP_WEB, "--config", self.config], folder, environment)
-        self.port = int(bench.wait_for(f"{name} to listen", self._ready))
+        self.port = self.listening_port()
         self.address = f"http://127.0.0.1:{self.port}"
-
-    def _ready(self):
-        if not self.running():
-            raise AssertionError(f"{self.name} ended: {self.errors()}")
-        found = re.search(r"listening on http://[\d.]+:(\d+)/\n", self.output())
-        return found and found.group(1)
 
     def ask(self, path, body=None, method=None, token=None, headers=()):
         """Sends a request like the page, or with a token. Returns (status, text, headers)."""
