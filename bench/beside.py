@@ -9,7 +9,6 @@ benchmarks). The programs for Octave and SciPy are in bench/beside. Both program
 code. This script measures every number of the page. Exit codes: 0: the page was written; 1: a program failed, or a
 program read values that differ from the exported values.
 """
-import argparse
 import csv
 import json
 import pathlib
@@ -31,11 +30,11 @@ PUBLISHED = ROOT / "config/models/zhang2025.yaml"
 SIMULATOR, MEX = ROOT / "bench/sysid_peer_simulator.c", ROOT / "bench/sysid_peer_mex.c"
 
 
-def said(words, folder):
-    """Runs a program. Returns the standard output of the program and the processor time that it used on all cores. The
-    elapsed time is not used, because other programs on the machine increase it."""
+def said(words, folder, environment=None):
+    """Runs a program. Returns the standard output of the program and the processor time that it used on all cores [s].
+    The elapsed time is not used, because other programs on the machine increase it."""
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([str(word) for word in words], cwd=folder, env=environment, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, words))}:\n{done.stdout}{done.stderr}")
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -208,13 +207,11 @@ class Study:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/results/beside-octave-and-scipy.md")
+    parser = results_page.arguments(__doc__, page=ROOT / "docs/results/beside-octave-and-scipy.md")
     parser.add_argument("--runs", type=int, default=3)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        study = Study(options.build.resolve(), options.runs, pathlib.Path(folder))
+        study = Study(options.build, options.runs, pathlib.Path(folder))
         for step in (study.prepare, study.peers, study.ours, study.exports):
             step()
         options.page.write_text(study.page(), encoding="utf-8")

@@ -8,19 +8,17 @@ Measures the import, one simulation of 10,000 samples from Python and from C++, 
 (scripts/packages.sh tests readers). Exit codes: 0: the page was written; 1: a program failed or a requirement is not
 met.
 """
-import argparse
 import json
 import os
 import pathlib
-import resource
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "scripts"))
+import beside  # noqa: E402
 import results_page  # noqa: E402
 
 SAMPLES, CALLS, STARTS = 10_000, 400, 20
@@ -59,12 +57,7 @@ class Study:
 
     def said(self, *words):
         """Runs a program. Returns the standard output of the program and its processor time on all cores [s]."""
-        began = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run([str(word) for word in words], cwd=self.folder, env=self.environment, capture_output=True, text=True)
-        if done.returncode != 0:
-            sys.exit(f"{' '.join(map(str, words))}:\n{done.stdout}{done.stderr}")
-        used = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return done.stdout, used.ru_utime + used.ru_stime - began.ru_utime - began.ru_stime
+        return beside.said(words, self.folder, self.environment)
 
     def imports(self, without_numpy):
         """Returns the median wall time and the median processor time of an import [s]."""
@@ -102,13 +95,11 @@ class Study:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/results/python-library.md")
+    parser = results_page.arguments(__doc__, page=ROOT / "docs/results/python-library.md")
     parser.add_argument("--runs", type=int, default=5)
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        study = Study(args.build.resolve(), args.runs, pathlib.Path(folder))
+        study = Study(args.build, args.runs, pathlib.Path(folder))
         with_numpy, without_numpy = study.imports(False), study.imports(True)
         cpp_us, python_us = study.simulations()
         (scipy, scipy_s), (ours, ours_s) = study.identifications()

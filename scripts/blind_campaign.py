@@ -10,7 +10,6 @@ outcomes.
 The campaign can be resumed: the outcome of every world is one line of DIR/results.jsonl, and the script skips worlds
 in this file. --page writes the page with the table. It also writes the pictures to the folder of the page.
 """
-import argparse
 import itertools
 import pathlib
 import random
@@ -62,9 +61,7 @@ def told(world, result):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser = results_page.arguments(__doc__, work=True)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--clean", type=int, default=200)
     parser.add_argument("--outside", type=int, default=60)
@@ -74,10 +71,8 @@ def main():
     parser.add_argument("--first-seed", type=int, default=1000)
     parser.add_argument("--most-minutes", type=float, help="start no further simulated case after this time; run the script again to continue")
     parser.add_argument("--workers", type=int, default=1, help="number of diagnoses that run in parallel")
-    parser.add_argument("--page", type=pathlib.Path)
     varying.add_options(parser)
     args = parser.parse_args()
-    args.build = args.build.resolve()
     ledger = Ledger(args.work / "results.jsonl", ("causes", "strength", "seed", *varying.KEYS))
     ids, outside = judging.library(args.build)
     planned = list(worlds(args, ids, outside))

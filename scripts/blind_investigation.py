@@ -10,7 +10,6 @@ true cause among its alternatives, the investigation plays the proposed experime
 separates the causes, the investigation checks the sensor of the world against a gauge. The script can be resumed, like
 scripts/blind_campaign.py.
 """
-import argparse
 import collections
 import json
 import pathlib
@@ -86,18 +85,14 @@ def page(results, command, version):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser = results_page.arguments(__doc__, work=True)
     parser.add_argument("--campaign", type=pathlib.Path)
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--strengths", type=float, nargs="+", default=[8, 2])
     parser.add_argument("--causes", nargs="+")
     parser.add_argument("--first-seed", type=int, default=3000)
     parser.add_argument("--no-gauge", action="store_true", help="waveforms alone")
-    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
-    args.build = args.build.resolve()
     ledger = Ledger(args.work / "investigations.jsonl", ("causes", "strength", "seed", "poor"))
     ids, _ = judging.library(args.build)
     for world in worlds(args, ids):

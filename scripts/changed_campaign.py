@@ -14,7 +14,6 @@ line of DIR/changed.jsonl, and the finished worlds are always a fair sample. --v
 run-to-run variation (tests/blind/variation.h). --closed-loop records the later logs in closed loop. --baseline-runs 1
 3 6 gives the same fingers these numbers of healthy logs. The page states these options.
 """
-import argparse
 import collections
 import itertools
 import pathlib
@@ -160,9 +159,7 @@ def changing_text():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=pathlib.Path, required=True)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser = results_page.arguments(__doc__, work=True)
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--unchanged", type=int, default=60)
     parser.add_argument("--strengths", type=float, nargs="+", default=[0.15, 1])
@@ -170,10 +167,9 @@ def main():
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--most-minutes", type=float)
-    parser.add_argument("--page", type=pathlib.Path)
     varying.add_options(parser, baseline_runs=True)
     args = parser.parse_args()
-    build = args.build.resolve()
+    build = args.build
     ledger = Ledger(args.work / "changed.jsonl", KEYS)
     planned = worlds(args, build)
     campaign.run(ledger, planned, "changing", args,

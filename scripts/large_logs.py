@@ -8,7 +8,6 @@ The commands are ramps to random pressures (the seeds are in this file), and the
 The cases run one after the other and include all steps of the command: reading the files, closed loop and report. Run
 nothing else at the same time.
 """
-import argparse
 import json
 import os
 import pathlib
@@ -145,13 +144,10 @@ def page(args, rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser = results_page.arguments(__doc__)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--only", nargs="+", help="run only the cases whose name contains one of these texts")
-    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
-    args.build = args.build.resolve()
     softgrip, rows = args.build / "tools/softgrip", []
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)

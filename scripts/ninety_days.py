@@ -11,7 +11,6 @@ decreases, and a common supply line begins to leak. Each repair has a maintenanc
 recording on a rig with a thermometer. The recordings are judged four times: with and without the temperature, for
 both fingers together and for each alone. The exit code is 1 if an event was not detected.
 """
-import argparse
 import concurrent.futures
 import dataclasses
 import datetime
@@ -316,12 +315,10 @@ without delay, and only the weather is correlated from day to day.
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser = results_page.arguments(__doc__)
     parser.add_argument("--healthy", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the recordings; recordings that the folder already contains are used again")
-    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     softgrip = (args.build / "tools/softgrip").resolve()
     began = time.monotonic()

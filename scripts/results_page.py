@@ -1,10 +1,24 @@
 """Writes the beginning of a page in docs/results: the meaning of the result for a user, and a table of version, date,
 command and conditions. tests/repository/results.py checks that each page has this beginning."""
+import argparse
 import datetime
 import math
 import os
 import pathlib
 import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def arguments(about, work=False, page=None):
+    """Returns the parser of a script that writes a page, with the options --build and --page. If `work` is true, the
+    folder --work is required. `page` is the default of --page."""
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=lambda path: pathlib.Path(path).resolve(), default=ROOT / "build/release")
+    parser.add_argument("--page", type=pathlib.Path, default=page)
+    if work:
+        parser.add_argument("--work", type=pathlib.Path, required=True)
+    return parser
 
 
 def version_of(build):

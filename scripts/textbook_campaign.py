@@ -14,7 +14,6 @@ tables, and the pictures to the folder of the page. With --most-minutes 0, the p
 alone. --variation X sets the strength of the run-to-run variation (tests/blind/variation.h). The page states the
 strength.
 """
-import argparse
 import itertools
 import pathlib
 import random
@@ -78,9 +77,7 @@ def told(world, result):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser = results_page.arguments(__doc__, work=True)
     parser.add_argument("--clean", type=int, default=100)
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--pairs", type=int, default=40)
@@ -92,10 +89,8 @@ def main():
     parser.add_argument("--first-seed", type=int, default=1000)
     parser.add_argument("--most-minutes", type=float, help="start no further simulated case after this time; run the script again to continue")
     parser.add_argument("--workers", type=int, default=1, help="number of diagnoses that run in parallel, each on one core")
-    parser.add_argument("--page", type=pathlib.Path)
     varying.add_options(parser)
     args = parser.parse_args()
-    args.build = args.build.resolve()
     ledger = Ledger(args.work / "textbook.jsonl", KEYS)
     planned = worlds(args, trial.listed(args.build, "--list"), trial.listed(args.build, "--makes"))
     campaign.run(ledger, planned, "trial", args, told)

@@ -14,7 +14,6 @@ mean square of reading minus reference at the time of the reading, from the seco
 of the sensor noise is part of the mean square error of every controller, so the table also states a ratio of the errors
 without the noise.
 """
-import argparse
 import concurrent.futures
 import csv
 import math
@@ -209,16 +208,13 @@ def page(results, frequencies_hz, command, version):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser = results_page.arguments(__doc__, work=True)
     parser.add_argument("--fingers", type=int, default=10)
     parser.add_argument("--side-by-side", type=int, default=5)
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--frequencies-hz", type=float, nargs="+", default=[0.05, 0.1, 0.2, 0.5])
-    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
-    build, work = args.build.resolve(), args.work.resolve()
+    build, work = args.build, args.work.resolve()
     makes = run(build / "tests/blind/textbook/textbook-world", "--makes").split()
     fingers = [(makes[i % len(makes)], args.first_seed + i) for i in range(args.fingers)]
     results = []

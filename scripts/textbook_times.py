@@ -97,14 +97,11 @@ def page(args, rows, command):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser = results_page.arguments(__doc__)
     parser.add_argument("--worlds", type=int, default=24)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--first-seed", type=int, default=1000)
-    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
-    args.build = args.build.resolve()
     rows = []
     for world in planned(args):
         rows.append(timed(args.build, args.threads, world))

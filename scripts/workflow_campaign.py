@@ -7,7 +7,6 @@ plain loop.
 Each row runs `softgrip identify` for a simulated log of 25 s at 20 Hz. Each log comes from a different finger. Slurm
 needs root.
 """
-import argparse
 import csv
 import hashlib
 import json
@@ -121,15 +120,12 @@ def page(args, figures):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=pathlib.Path, required=True)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser = results_page.arguments(__doc__, work=True)
     parser.add_argument("--rows", type=int, default=1000)
     parser.add_argument("--cores", type=int, default=2)
     parser.add_argument("--batch", type=int, default=25)
-    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
-    args.work, args.build = args.work.resolve(), args.build.resolve()
+    args.work = args.work.resolve()
     program = args.build / "tools/softgrip"
     figures = {"ways": []}
     make(args, program)
