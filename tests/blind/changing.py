@@ -9,7 +9,6 @@ later logs are recorded in closed loop.
 """
 import json
 import pathlib
-import shutil
 import subprocess
 import tempfile
 
@@ -91,8 +90,8 @@ def make(build, world, work):
 def run_world(build, folder, world, threads=1):
     """Simulates and diagnoses the world. Returns a copy of the world with the results added."""
     build = pathlib.Path(build).resolve()
-    work = pathlib.Path(tempfile.mkdtemp(dir=folder))
-    try:
+    with tempfile.TemporaryDirectory(dir=folder) as name:
+        work = pathlib.Path(name)
         healthy, later, truth = make(build, world, work)
         diagnosis, message = judging.diagnose(build, GIVEN[world["family"]], later, work / "out", "--threads", str(threads),
                                               "--healthy", *healthy)
@@ -105,5 +104,3 @@ def run_world(build, folder, world, threads=1):
                     {key: r[key] for key in ("reading", "healthy_heldout_rms", "later_rms", "explained_rms", "misfit")} |
                     {"tried": r["tried"][:3]} for r in diagnosis["readings"]],
                 "excess_mm": {k: e["excess_mm"] for k, e in truth["effects"].items()}, "wall_s": diagnosis["wall_s"]}
-    finally:
-        shutil.rmtree(work)

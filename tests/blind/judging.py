@@ -5,7 +5,6 @@ The diagnosis is called as a user calls it and never receives the truth.
 """
 import json
 import pathlib
-import shutil
 import subprocess
 import tempfile
 
@@ -111,8 +110,8 @@ def diagnose(build, model, logs, out, *options):
 def run_world(build, folder, world):
     """Simulates and diagnoses the world. Returns a copy of the world with the results added."""
     build = pathlib.Path(build).resolve()
-    work = pathlib.Path(tempfile.mkdtemp(dir=folder))
-    try:
+    with tempfile.TemporaryDirectory(dir=folder) as name:
+        work = pathlib.Path(name)
         make = [build / "tests/blind/blind-world", "--seed", str(world["seed"]), "--strength", str(world["strength"]),
                 "--out", work / "logs", "--truth", work / "truth.json", *varying.of_generator(world)]
         if world["causes"]:
@@ -130,8 +129,6 @@ def run_world(build, folder, world):
                 "unexplained_percent": diagnosis["unexplained_percent"],
                 "covered": covered(world["causes"], truth, diagnosis), "wall_s": diagnosis["wall_s"],
                 "reachable": all(e["reachable"] for e in truth["effects"].values())}
-    finally:
-        shutil.rmtree(work)
 
 
 def library(build):

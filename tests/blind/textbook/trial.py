@@ -7,7 +7,6 @@ given_model().
 """
 import json
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -124,8 +123,8 @@ def diagnosed(build, model, logs, work, world, threads):
 def run_world(build, folder, world, threads=1):
     """Simulates and diagnoses the world. Returns a copy of the world with the results added."""
     build = pathlib.Path(build).resolve()
-    work = pathlib.Path(tempfile.mkdtemp(dir=folder))
-    try:
+    with tempfile.TemporaryDirectory(dir=folder) as name:
+        work = pathlib.Path(name)
         logs, truth = make_logs(build, work, world, *hiding(world))
         model = given_model(build, work, world, threads)
         if model is None:
@@ -137,5 +136,3 @@ def run_world(build, folder, world, threads=1):
         result = {**world, **named_in(diagnosis, judge(world["causes"], own, diagnosis)), "own": sorted(own),
                   "reachable": all(e["reachable"] for e in truth["effects"].values())}
         return result if world["causes"] else {**result, **held_out(build, logs, work, threads)}
-    finally:
-        shutil.rmtree(work)
