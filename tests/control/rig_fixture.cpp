@@ -155,6 +155,12 @@ bool SimulatedRig::run_until_step(std::uint16_t step, double seconds) {
   return false;
 }
 
+bool SimulatedRig::start(const PreparedSequence& sequence) {
+  if (!run_until(State::idle, 1)) return false;
+  request(Request::Kind::start, &sequence);
+  return run_until(State::running, 5);
+}
+
 bool SimulatedRig::start_until_step(const PreparedSequence& sequence, std::uint16_t step, double seconds) {
   if (!run_until(State::idle, 1)) return false;
   request(Request::Kind::start, &sequence);

@@ -77,6 +77,8 @@ class SimulatedRig {
   /// Runs ticks until the sequence is in the step with this index, for at most `seconds`. Returns true if the
   /// sequence has reached the step.
   bool run_until_step(std::uint16_t step, double seconds);
+  /// Waits until the rig is idle and starts the sequence. Returns true if the sequence runs.
+  bool start(const PreparedSequence& sequence);
   /// Waits until the rig is idle and starts the sequence. Then runs ticks until the sequence is in the step
   /// with this index.
   bool start_until_step(const PreparedSequence& sequence, std::uint16_t step, double seconds = 20);

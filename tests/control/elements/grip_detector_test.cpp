@@ -155,9 +155,7 @@ TEST(GripDetection, AMarginOf3RmseGivesRightResultsWithInaccurateModels) {
         if (stone) {
           rig.stone(11);
         }
-        ASSERT_TRUE(rig.run_until(State::idle, 1));
-        rig.request(Request::Kind::start, &sequence);
-        ASSERT_TRUE(rig.run_until(State::running, 5));
+        ASSERT_TRUE(rig.start(sequence));
         ASSERT_TRUE(rig.run_until(State::idle, 60));
         EXPECT_EQ(rig.result(0), stone ? GripResult::released : GripResult::no_part)
             << name << (stone ? " with" : " without") << " a stone";

@@ -27,14 +27,9 @@ class ContactTest : public testing::Test {
   [[nodiscard]] double squeeze_kpa(const SimulatedRig& rig) const {
     return rig.output().channels[0].pressure_kpa - curve.command_kpa(rig.plant_mm(0));
   }
-  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until(State::running, 5));
-  }
   /// Runs the sequence to its end and returns the largest gripping pressure of the left finger.
   double play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
-    start(rig, sequence);
+    EXPECT_TRUE(rig.start(sequence));
     double most = 0;
     const double end_s = rig.time_s() + seconds;
     while (rig.time_s() < end_s && rig.output().state != State::idle) {
@@ -77,7 +72,7 @@ TEST_F(ContactTest, TheRequestedGrippingPressureIsApplied) {
   for (const double at_mm : {5.0, 12.0}) {
     SimulatedRig rig(settings);
     rig.stone(at_mm);
-    start(rig, pick);
+    ASSERT_TRUE(rig.start(pick));
     ASSERT_TRUE(rig.run_until_step(2, 20));
     rig.run(1);
     EXPECT_NEAR(squeeze_kpa(rig), pick.steps[1].step.squeeze.by_kpa, 1) << at_mm;
@@ -103,7 +98,7 @@ TEST_F(ContactTest, ContactDuringAMoveCanStartTheGrip) {
   SimulatedRig rig(settings);
   rig.stone(4);
   rig.stone_only_left = true;
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(1, 20));
   EXPECT_EQ(contacts(rig, OnContact::grip), 1U);
   EXPECT_LT(rig.plant_mm(1), 8) << "the finger without contact begins the grip at its present position";
@@ -127,7 +122,7 @@ TEST_F(ContactTest, AMoveWithAToleranceFailsAtContactBeforeTheTimeout) {
       "timeout_s: 30, on_fail: vent}\n");
   SimulatedRig rig(settings);
   rig.stone(6);
-  start(rig, move);
+  ASSERT_TRUE(rig.start(move));
   EXPECT_TRUE(rig.run_until(State::idle, 5));
   EXPECT_EQ(rig.result(0), GripResult::error);
 }
@@ -138,7 +133,7 @@ TEST_F(ContactTest, OnContactIgnoreKeepsTheStepPressureLimit) {
       "settle_s: 3}\n");
   SimulatedRig rig(settings);
   rig.stone(6);
-  start(rig, move);
+  ASSERT_TRUE(rig.start(move));
   double most = 0;
   while (rig.output().state != State::idle && rig.time_s() < 20) {
     rig.tick();
@@ -210,7 +205,7 @@ TEST_F(ContactTest, AFrozenReadingIsNeverReportedAsHolding) {
     for (double after_s = 0.2; after_s < 8; after_s += 0.6) {
       SCOPED_TRACE(testing::Message() << name << " " << after_s);
       SimulatedRig rig(settings);
-      start(rig, sequence);
+      ASSERT_TRUE(rig.start(sequence));
       rig.run(after_s);
       if (rig.output().state != State::running) continue;
       rig.fault[0].frozen_mm = rig.output().channels[0].displacement_mm;
@@ -243,7 +238,7 @@ TEST_F(ContactTest, AYieldingPartIsGrippedAtTheRequestedPressure) {
   SimulatedRig rig(settings, 3);
   rig.yields = 0.5;
   rig.stone(8);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(2, 20));
   EXPECT_EQ(rig.result(0), GripResult::holding);
   EXPECT_GT(rig.plant_mm(0), 8.5);
@@ -254,7 +249,7 @@ TEST_F(ContactTest, ALostPartIsNotFollowedBeyondTheTarget) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(9);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   while (contacts(rig, OnContact::squeeze) < 2 && rig.time_s() < 20) rig.tick();
   rig.run(0.1);
   rig.stone(std::nullopt);
@@ -284,7 +279,7 @@ TEST_F(ContactTest, AHoldLastsUntilTheReleaseRequest) {
   const PreparedSequence hand_over = example_sequence("hand_over", settings);
   SimulatedRig rig(settings);
   rig.stone(12);
-  start(rig, hand_over);
+  ASSERT_TRUE(rig.start(hand_over));
   ASSERT_TRUE(rig.run_until_step(1, 20));
   rig.run(100);
   EXPECT_EQ(rig.result(0), GripResult::holding);
@@ -311,7 +306,7 @@ TEST_F(ContactTest, NoPressureRisesAfterAReleaseRequestInAnyStep) {
       SCOPED_TRACE(after_s);
       SimulatedRig rig(settings);
       rig.stone(12);
-      start(rig, *sequence);
+      ASSERT_TRUE(rig.start(*sequence));
       rig.run(after_s);
       if (rig.output().state != State::running) continue;
       rig.request(Request::Kind::release);

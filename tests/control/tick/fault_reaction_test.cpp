@@ -200,11 +200,6 @@ INSTANTIATE_TEST_SUITE_P(AllFaultsInAllPhases, FaultReaction,
 
 class SingleFault : public testing::Test {
  protected:
-  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until(State::running, 5));
-  }
   RigSettings settings = base();
 };
 
@@ -243,7 +238,7 @@ TEST_F(SingleFault, ACorrectReadbackResetsTheMismatchCount) {
 TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
   SimulatedRig rig(settings);
   const PreparedSequence track = example_sequence("track_sine", settings);
-  start(rig, track);
+  ASSERT_TRUE(rig.start(track));
   rig.fault[0].frozen_mm = rig.output().channels[0].displacement_mm;
   ASSERT_TRUE(rig.run_until(State::faulted, 5));
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::reading_frozen);
@@ -254,7 +249,7 @@ TEST_F(SingleFault, ABurstLineIsAFaultAndNotReportedAsHolding) {
   // controller did not check the pressure, the grip result would be HOLDING.
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(1, 30));
   while (rig.output().state == State::running && rig.time_s() < 60) {
     rig.fault[0].frozen_mm = rig.fault[0].frozen_mm.value_or(rig.plant_mm(0)) + 1e-3 * std::sin(rig.time_s());
@@ -300,7 +295,7 @@ TEST_F(SingleFault, AnUnmeasuredPressureCausesNoFault) {
   rig.fault[0].no_pressure = true;
   rig.fault[1].no_pressure = true;
   const PreparedSequence pick = example_sequence("pick_stone", settings);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until(State::idle, 60));
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
 }
@@ -322,7 +317,7 @@ TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyIfConfigured) {
     settings.faults.model_unfit_is_fault = is_fault;
     SimulatedRig rig(settings);
     const PreparedSequence track = example_sequence("track_sine", settings);
-    start(rig, track);
+    ASSERT_TRUE(rig.start(track));
     ASSERT_TRUE(rig.run_until_step(1, 10));
     for (int i = 0; i < 4000 && rig.output().state == State::running; ++i) {
       rig.fault[0].offset_mm = std::min(6.0, rig.fault[0].offset_mm + 0.05);
@@ -348,7 +343,7 @@ TEST_F(SingleFault, TheFirstFaultStaysLatchedAndLaterFaultsAreReported) {
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   rig.stone(12);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(2, 20));
   rig.fault[0].validity = model::Validity::sensor_error;
   ASSERT_TRUE(rig.run_until(State::faulted, 1));
@@ -401,7 +396,7 @@ TEST_F(SingleFault, AReconnectionKeepsThePressureOfTheBoard) {
     rig.board_vents = board_vents;
     rig.stone(12);
     const PreparedSequence pick = example_sequence("pick_stone", settings);
-    start(rig, pick);
+    ASSERT_TRUE(rig.start(pick));
     ASSERT_TRUE(rig.run_until_step(2, 20));
     const double held_kpa = rig.board_kpa(0);
     rig.wire_cut = true;
@@ -422,7 +417,7 @@ TEST_F(SingleFault, ALaterFaultUsesTheSafeActionOfTheFirstPhase) {
   SimulatedRig rig(settings);
   rig.stone(12);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(2, 20));
   const double held_kpa = rig.board_kpa(0);
   rig.fault[0].validity = model::Validity::out_of_range;
@@ -476,7 +471,7 @@ TEST_F(SingleFault, HeldPressureIsReportedOnlyWithoutARunningSequence) {
   SimulatedRig rig(settings);
   rig.stone(12);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(2, 20));
   EXPECT_EQ(rig.output().under_pressure, 0U) << "the running sequence requested the hold";
   rig.request(Request::Kind::stop);
@@ -500,7 +495,7 @@ TEST_F(SingleFault, BriefReadingDropoutsCauseNoFault) {
   SimulatedRig rig(settings);
   rig.stone(12);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(1, 20));
   for (int i = 0; i < 30; ++i) {
     rig.fault[0].validity = model::Validity::out_of_range;

@@ -13,9 +13,7 @@ class GripCycle : public testing::Test {
  protected:
   /// Waits until the start-up has ended, starts a sequence and runs the sequence to its end.
   void play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until(State::running, 5));
+    ASSERT_TRUE(rig.start(sequence));
     ASSERT_TRUE(rig.run_until(State::idle, seconds));
   }
 
@@ -245,9 +243,7 @@ steps:
   settings.faults.invalid_reading_cycles = 10'000;
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &grip);
-  ASSERT_TRUE(rig.run_until(State::running, 5));
+  ASSERT_TRUE(rig.start(grip));
   rig.run(1.55);  // the finger has arrived at its target
   rig.fault[0].validity = model::Validity::out_of_range;
   ASSERT_TRUE(rig.run_until(State::idle, 10));
@@ -350,9 +346,7 @@ steps:
 )",
                                                settings);
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &profile);
-  ASSERT_TRUE(rig.run_until(State::running, 5));
+  ASSERT_TRUE(rig.start(profile));
   const double start = rig.time_s();
   for (double t = 0; t < 3.99; t = rig.time_s() - start) {
     EXPECT_NEAR(rig.output().channels[0].command_kpa, value_at(profile.steps[0].step.profile, t), 1e-6) << t;

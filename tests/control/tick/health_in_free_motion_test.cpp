@@ -13,11 +13,6 @@ class HealthInFreeMotionTest : public testing::Test {
   HealthInFreeMotionTest() {
     for (ChannelSettings& channel : settings.channels) channel.health.unfit_mm = 1;
   }
-  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until(State::running, 5));
-  }
   static bool unfit(const SimulatedRig& rig) {
     for (const Event& event : rig.events) {
       if (event.kind == Event::Kind::model_health_changed &&
@@ -51,7 +46,7 @@ TEST_F(HealthInFreeMotionTest, APartHeldAfterAStopCausesNoHealthAlarm) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(8);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(2, 20));
   rig.run(1);
   rig.request(Request::Kind::stop);
@@ -65,7 +60,7 @@ TEST_F(HealthInFreeMotionTest, APartHeldAfterAFaultCausesNoHealthAlarm) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(8);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   ASSERT_TRUE(rig.run_until_step(2, 20));
   rig.run(1);
   rig.fault[1].validity = model::Validity::sensor_error;
@@ -85,7 +80,7 @@ TEST_F(HealthInFreeMotionTest, ContactDuringAMoveCausesNoHealthAlarm) {
   SimulatedRig rig(settings);
   rig.stone(6);
   const PreparedSequence sequence = moves();
-  start(rig, sequence);
+  ASSERT_TRUE(rig.start(sequence));
   ASSERT_TRUE(rig.run_until(State::idle, 60));
   EXPECT_GT(rig.count(Event::Kind::contact), 0U);
   EXPECT_FALSE(unfit(rig));
@@ -94,7 +89,7 @@ TEST_F(HealthInFreeMotionTest, ContactDuringAMoveCausesNoHealthAlarm) {
 TEST_F(HealthInFreeMotionTest, AStifferFingerCausesAHealthAlarm) {
   SimulatedRig rig(settings, 1, stiffer(1.3));
   const PreparedSequence sequence = moves();
-  start(rig, sequence);
+  ASSERT_TRUE(rig.start(sequence));
   ASSERT_TRUE(rig.run_until(State::idle, 60));
   EXPECT_TRUE(unfit(rig));
 }
@@ -102,7 +97,7 @@ TEST_F(HealthInFreeMotionTest, AStifferFingerCausesAHealthAlarm) {
 TEST_F(HealthInFreeMotionTest, ASofterFingerCausesAHealthAlarm) {
   SimulatedRig rig(settings, 1, stiffer(0.75));
   const PreparedSequence sequence = moves();
-  start(rig, sequence);
+  ASSERT_TRUE(rig.start(sequence));
   ASSERT_TRUE(rig.run_until(State::idle, 60));
   EXPECT_TRUE(unfit(rig));
 }

@@ -18,12 +18,6 @@ class Requests : public testing::Test {
     ASSERT_TRUE(refused) << "expected " << name_of(code);
     EXPECT_EQ(refused->detail, Event::Detail(RequestRefusal{code})) << "expected " << name_of(code);
   }
-  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until(State::running, 5));
-  }
-
   RigSettings settings = two_finger_settings();
   PreparedSequence pick = example_sequence("pick_stone", settings);
 };
@@ -39,7 +33,7 @@ TEST_F(Requests, ACheckAnswersLikeAStartWithoutMotion) {
   rig.request(Request::Kind::check, &pick);
   expect_refused(rig, RefusalCode::interlock_open);
   rig.interlock_open = false;
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   rig.request(Request::Kind::check, &pick);
   expect_refused(rig, RefusalCode::not_idle);
   EXPECT_EQ(rig.output().state, State::running);
@@ -115,7 +109,7 @@ TEST_F(Requests, StopAppliesTheSafeActionOfThePhase) {
       settings.safety.safe_action[static_cast<std::size_t>(test.phase)] = action;
       SimulatedRig rig(settings);
       rig.stone(12);
-      start(rig, pick);
+      ASSERT_TRUE(rig.start(pick));
       ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(test.step), 20));
       rig.run(0.1);
       rig.request(Request::Kind::stop);
@@ -218,7 +212,7 @@ TEST_F(Requests, VentWorksAtStartWhileHoldingAndWhileFaulted) {
   for (const bool faulted : {false, true}) {
     SimulatedRig gripping(settings);
     gripping.stone(12);
-    start(gripping, pick);
+    ASSERT_TRUE(gripping.start(pick));
     ASSERT_TRUE(gripping.run_until_step(2, 20));
     if (faulted) {
       gripping.emergency_stop = true;
@@ -241,7 +235,7 @@ TEST_F(Requests, AnOpenInterlockStopsOnlySequencesWithAlways) {
     const PreparedSequence& sequence = always ? screw : pick;
     SimulatedRig rig(settings);
     rig.stone(12);
-    start(rig, sequence);
+    ASSERT_TRUE(rig.start(sequence));
     ASSERT_TRUE(rig.run_until_step(1, 20));
     rig.interlock_open = true;
     rig.run(1);
@@ -273,7 +267,7 @@ TEST_F(Requests, AStartWaitsUntilAnInflatedFingerIsAtRest) {
   const PreparedSequence press =
       sequence_of("name: x\nsteps:\n  - move: {pressure_kpa: 40, duration_s: 1}\n", settings);
   SimulatedRig rig(settings);
-  start(rig, press);
+  ASSERT_TRUE(rig.start(press));
   ASSERT_TRUE(rig.run_until(State::idle, 5));
   rig.run(20);
   rig.request(Request::Kind::start, &press);
@@ -310,7 +304,7 @@ TEST_F(Requests, SafePressuresFollowThePhaseOfTheSequence) {
   settings.safety.safe_action = {SafeAction::vent, SafeAction::vent, SafeAction::hold, SafeAction::vent};
   SimulatedRig rig(settings);
   rig.stone(12);
-  start(rig, pick);
+  ASSERT_TRUE(rig.start(pick));
   for (std::uint16_t step = 0; step < 4; ++step) {
     ASSERT_TRUE(rig.run_until_step(step, 20));
     rig.run(0.1);

@@ -26,9 +26,7 @@ class SequencePlayback : public testing::Test {
   }
 
   void play(SimulatedRig& rig, const PreparedSequence& sequence) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until(State::running, 5));
+    ASSERT_TRUE(rig.start(sequence));
     ASSERT_TRUE(rig.run_until(State::idle, 60));
     rig.run(0.1);
   }
@@ -133,9 +131,7 @@ TEST_F(SequencePlayback, EachOf100ShortStepsReachesTheTarget) {
   }
   const PreparedSequence sequence = steps(text);
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &sequence);
-  ASSERT_TRUE(rig.run_until(State::running, 5));
+  ASSERT_TRUE(rig.start(sequence));
   std::uint16_t step = 0;
   double reference_mm = 0;
   while (rig.tick().state == State::running) {
@@ -156,9 +152,7 @@ TEST_F(SequencePlayback, TheReferenceIsContinuousBetweenSteps) {
       "  - track: {mean_mm: 13, amplitude_mm: 7, frequency_hz: 0.5, cycles: 2}\n"
       "  - move: {displacement_mm: 10, duration_s: 1}\n");
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &sequence);
-  ASSERT_TRUE(rig.run_until(State::running, 5));
+  ASSERT_TRUE(rig.start(sequence));
   double before_mm = rig.output().channels[0].reference_mm;
   while (rig.tick().state == State::running) {
     const double now_mm = rig.output().channels[0].reference_mm;
