@@ -6,18 +6,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "rig/board_map_file.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 void check(const drivers::TerminalBlock& block) {
   if (block.registers.count == 0) return;  // this module has no inputs or no outputs

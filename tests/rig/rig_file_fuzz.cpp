@@ -7,19 +7,17 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "control/tick/settings.h"
 #include "rig/rig_file.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 void check(const rig::RigFile& rig) {
   require(control::settings_problems(rig.settings).empty());

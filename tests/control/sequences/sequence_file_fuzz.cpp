@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "control/sequences/sequence_file.h"
+#include "tests/support/require.h"
 
 namespace {
 
@@ -27,9 +27,7 @@ control::RigSettings rig() {
   return settings;
 }
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 void check(const control::PreparedSequence& sequence) {
   require(!sequence.steps.empty() && sequence.steps.size() <= 200);

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,15 +14,14 @@
 #include "drivers/board/registers.h"
 #include "drivers/modbus/mbap.h"
 #include "drivers/modbus/modbus_message.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip::drivers;
 using State = ModbusReply::State;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 /// Takes bytes from the front of the input. After the last byte, returns 0.
 class Choices {

@@ -4,16 +4,14 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 
 #include "drivers/modbus/rtu_frame.h"
+#include "tests/support/require.h"
 
 namespace {
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
+using test::require;
 
 }  // namespace
 

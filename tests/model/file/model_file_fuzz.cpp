@@ -5,18 +5,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "model/file/model_file.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 }  // namespace
 

@@ -4,20 +4,18 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 
 #include "drivers/modbus_server/requests.h"
 #include "rig/board_map_file.h"
 #include "simulation/emulator/emulated_board.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 drivers::BoardMap sim_board() {
   document::Problems problems;

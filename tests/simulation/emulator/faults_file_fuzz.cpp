@@ -7,19 +7,17 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "simulation/emulator/fault.h"
 #include "simulation/emulator/fault_schedule.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 void check(const simulation::FaultSpec& fault) {
   require(!fault.name.empty());

@@ -5,18 +5,16 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 
+#include "tests/support/require.h"
 #include "tools/plc/gateway.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 plc::Settings shipped() {
   document::Problems problems;

@@ -6,18 +6,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "sysid/diagnosis/gauge/gauge_file.h"
+#include "tests/support/require.h"
 
 namespace {
 
 using namespace softgrip;
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using test::require;
 
 }  // namespace
 
