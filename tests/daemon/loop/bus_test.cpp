@@ -42,6 +42,29 @@ class BusTest : public ::testing::Test {
     return kinds;
   }
 
+  /// The board refuses a write in the next exchange, and its outputs have 5 kPa.
+  void refuse_a_write() {
+    board_.next_exchange = BusStatus::write_refused;
+    board_.found = 5;
+    step();
+  }
+  void run_for_two_seconds() {
+    for (const Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
+      command(12, 0, true);
+      step();
+    }
+  }
+  /// Checks that the pauses between the attempts to connect double until the longest pause of 400 ms.
+  void expect_growing_pauses() const {
+    const auto& attempts = board_.connect_attempts;
+    ASSERT_GE(attempts.size(), 5U);
+    const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
+    for (std::size_t i = 0; i < pauses_ms.size(); ++i) {
+      EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
+                  static_cast<double>(period));
+    }
+  }
+
   VirtualClock clock_;
   ScriptedBoard board_{2, clock_};
   control::RigSettings rig_;
@@ -448,18 +471,9 @@ TEST_F(BusTest, ReconnectionPausesGrowAfterALostSession) {
   EXPECT_EQ(shared_.bus.value().health.fault, FaultCode::bus_timed_out);
   board_.connect_attempts.clear();
   board_.next_connect = BusStatus::disconnected;
-  for (Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
-    command(12, 0, true);
-    step();
-  }
+  run_for_two_seconds();
   EXPECT_EQ(shared_.bus.value().health.fault, FaultCode::bus_down);
-  const auto& attempts = board_.connect_attempts;
-  ASSERT_GE(attempts.size(), 5U);
-  const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
-  for (std::size_t i = 0; i < pauses_ms.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
-                static_cast<double>(period));
-  }
+  expect_growing_pauses();
   board_.next_connect = BusStatus::ok;
   board_.next_exchange = BusStatus::ok;
   for (int i = 0; i < 100; ++i) {
@@ -479,18 +493,9 @@ TEST_F(BusTest, SessionsThatFailAtOnceIncreaseTheReconnectionPause) {
   board_.next_exchange = BusStatus::bad_reply;
   step();
   board_.connect_attempts.clear();
-  for (Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
-    command(12, 0, true);
-    step();
-  }
-  const auto& attempts = board_.connect_attempts;
-  ASSERT_GE(attempts.size(), 5U);
-  ASSERT_LE(attempts.size(), 8U);
-  const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
-  for (std::size_t i = 0; i < pauses_ms.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
-                static_cast<double>(period));
-  }
+  run_for_two_seconds();
+  ASSERT_LE(board_.connect_attempts.size(), 8U);
+  expect_growing_pauses();
   // If an exchange is lost after good exchanges, the bus opens a new session immediately.
   board_.next_exchange = BusStatus::ok;
   for (int i = 0; i < 100; ++i) step();
@@ -528,9 +533,7 @@ TEST_F(BusTest, ARefusingResponseKeepsTheSession) {
 TEST_F(BusTest, ReadOutputsNearerToRestLimitTheCommands) {
   command(12, 0, true);
   step();
-  board_.next_exchange = BusStatus::write_refused;
-  board_.found = 5;
-  step();
+  refuse_a_write();
   EXPECT_EQ(fault(), FaultCode::write_refused);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 5);
   board_.next_exchange = BusStatus::ok;
@@ -562,9 +565,7 @@ TEST_F(BusTest, ReadOutputsAboveTheCommandOrNaNAreIgnored) {
 TEST_F(BusTest, AHoldContinuesDespiteReadOutputsNearerToRest) {
   command(12, 12, true);
   step();
-  board_.next_exchange = BusStatus::write_refused;
-  board_.found = 5;
-  step();
+  refuse_a_write();
   board_.next_exchange = BusStatus::ok;
   step();
   EXPECT_EQ(last_written(), 12);
@@ -573,9 +574,7 @@ TEST_F(BusTest, AHoldContinuesDespiteReadOutputsNearerToRest) {
 TEST_F(BusTest, ReadOutputsLimitTheFirstCommandsWithoutHold) {
   command(12, 12, true);
   step();
-  board_.next_exchange = BusStatus::write_refused;
-  board_.found = 5;
-  step();
+  refuse_a_write();
   board_.next_exchange = BusStatus::ok;
   command(11, 0, false, shared_.bus.value().health.inhibit);
   step();

@@ -10,10 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/files.h"
 #include "rig/rig_file.h"
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 #include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
 #include "tools/commissioning/examinations.h"
@@ -81,14 +82,23 @@ class DoctorTest : public ::testing::Test {
     event.line = {kind, share};
     at_once(event);
   }
-  void sensor_fault(SensorFault::Kind kind) {
+  void sensor_fault(SensorFault::Kind kind, std::size_t channel = Event::every_channel, double at_s = 0) {
     Event event;
     event.kind = Event::Kind::sensor_fault;
+    event.channel = channel;
     event.sensor.kind = kind;
+    event.at_s = at_s;
     at_once(event);
   }
-  const Findings& examine(bool move) {
+  simulation::SimulatedBoard& make_board() {
     board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
+    return *board_;
+  }
+  void move_on(drivers::Board& board) {
+    examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  }
+  const Findings& examine(bool move) {
+    make_board();
     examine_description(rig_, *board_, findings_);
     examine_rig(rig_, *board_, time_.clock, time_.stop(), move, {}, findings_);
     return findings_;
@@ -216,14 +226,9 @@ TEST_F(DoctorTest, ASensorThatIsOutOfRangeFails) {
 /// A finger without valid displacement readings could exceed its limits unnoticed. softgrip doctor must
 /// therefore not move this finger. It may move all other fingers.
 TEST_F(DoctorTest, ASensorThatIsOutOfRangePreventsTheMotionOfTheFinger) {
-  Event blind;
-  blind.kind = Event::Kind::sensor_fault;
-  blind.channel = 0;
-  blind.sensor.kind = SensorFault::Kind::out_of_range;
-  at_once(blind);
-  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
-  NotingBoard board(*board_);
-  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  sensor_fault(SensorFault::Kind::out_of_range, 0);
+  NotingBoard board(make_board());
+  move_on(board);
   expect("sensor left", Verdict::fail, "out_of_range");
   expect_not_judged("motion left", "see `sensor left`");
   EXPECT_EQ(finding("valve left").name, "no valve left");
@@ -235,15 +240,10 @@ TEST_F(DoctorTest, ASensorThatIsOutOfRangePreventsTheMotionOfTheFinger) {
 }
 
 TEST_F(DoctorTest, ASensorThatIsLostDuringTheMotionEndsTheMotion) {
-  Event blind;
-  blind.kind = Event::Kind::sensor_fault;
-  blind.channel = 0;
-  blind.sensor.kind = SensorFault::Kind::out_of_range;
-  blind.at_s = 1.5;  // the fault begins during the rise of the pressure, from 1 s to 2 s
-  at_once(blind);
-  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
-  NotingBoard board(*board_);
-  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  // The fault begins during the rise of the pressure, from 1 s to 2 s.
+  sensor_fault(SensorFault::Kind::out_of_range, 0, 1.5);
+  NotingBoard board(make_board());
+  move_on(board);
   expect("motion left", Verdict::fail, "are not valid (out_of_range)");
   expect_not_judged("motion right", "see `motion left`");
   EXPECT_GT(board.highest_kpa[0], 0);
@@ -254,19 +254,17 @@ TEST_F(DoctorTest, ASensorThatIsLostDuringTheMotionEndsTheMotion) {
 
 TEST_F(DoctorTest, AChannelWithoutASensorAndAPressureReadingIsNotMoved) {
   rig_.settings.channels[0].displacement_used = false;
-  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
-  BlindMonitor blind(*board_);
+  BlindMonitor blind(make_board());
   NotingBoard board(blind);
-  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  move_on(board);
   expect_not_judged("motion left", "see `pressure left`");
   EXPECT_EQ(board.highest_kpa[0], 0);
   expect("finger right", Verdict::ok, "moved");
 }
 
 TEST_F(DoctorTest, AFailedMonitorDoesNotPreventTheCheckOfTheFinger) {
-  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
-  BlindMonitor board(*board_);
-  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  BlindMonitor board(make_board());
+  move_on(board);
   expect("pressure left", Verdict::fail, "no reading");
   expect_not_judged("valve left", "see `pressure left`");
   expect("finger left", Verdict::ok, "moved");
@@ -383,7 +381,7 @@ TEST_F(DoctorTest, AStopByTheUserVentsTheOutputs) {
 }
 
 TEST_F(DoctorTest, FailsIfTheRecordingFolderIsNotWritable) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   rig_.recorder.mode = rig::RecorderSettings::Mode::always;
   rig_.recorder.directory = folder.path() + "/new/runs";
   examine_disk(rig_, findings_);

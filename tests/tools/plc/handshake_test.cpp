@@ -11,11 +11,21 @@ constexpr Command stop{2};
 constexpr Command vent{3};
 constexpr Command release{4};
 
-TEST(Handshake, ExecutesARepeatedCounterOnce) {
+struct Executing {
   Handshake handshake;
   Cursor plc;
-  EXPECT_FALSE(handshake.write(plc, {0, none}));
-  EXPECT_TRUE(handshake.write(plc, {1, start}));
+};
+
+/// Returns a handshake that executes its first command.
+Executing executing(const Command& command) {
+  Executing result;
+  EXPECT_FALSE(result.handshake.write(result.plc, {0, none}));
+  EXPECT_TRUE(result.handshake.write(result.plc, {1, command}));
+  return result;
+}
+
+TEST(Handshake, ExecutesARepeatedCounterOnce) {
+  auto [handshake, plc] = executing(start);
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
   EXPECT_FALSE(handshake.write(plc, {1, start}));
   handshake.finish(1, Outcome::accepted);
@@ -48,10 +58,7 @@ TEST(Handshake, TheFirstCounterWithoutACommandSynchronises) {
 }
 
 TEST(Handshake, OnlyTheNextCounterIsExecuted) {
-  Handshake handshake;
-  Cursor plc;
-  EXPECT_FALSE(handshake.write(plc, {0, none}));
-  EXPECT_TRUE(handshake.write(plc, {1, start}));
+  auto [handshake, plc] = executing(start);
   handshake.finish(1, Outcome::accepted);
   EXPECT_TRUE(handshake.write(plc, {2, vent}));
   handshake.finish(2, Outcome::accepted);
@@ -115,10 +122,7 @@ TEST(Handshake, RefusesASecondClientWithAnotherCommandAtTheSameCounter) {
 }
 
 TEST(Handshake, ACommandWithoutANewCounterIsNeitherExecutedNorRefused) {
-  Handshake handshake;
-  Cursor plc;
-  EXPECT_FALSE(handshake.write(plc, {0, none}));
-  EXPECT_TRUE(handshake.write(plc, {1, start}));
+  auto [handshake, plc] = executing(start);
   handshake.finish(1, Outcome::accepted);
   EXPECT_FALSE(handshake.write(plc, {1, vent}));  // not refused, because a master may write the new counter
                                                   // one cycle after the new command
@@ -128,10 +132,7 @@ TEST(Handshake, ACommandWithoutANewCounterIsNeitherExecutedNorRefused) {
 }
 
 TEST(Handshake, OnlyStopAndVentSupersedeAnExecutingCommand) {
-  Handshake handshake;
-  Cursor plc;
-  EXPECT_FALSE(handshake.write(plc, {0, none}));
-  EXPECT_TRUE(handshake.write(plc, {1, start}));
+  auto [handshake, plc] = executing(start);
   EXPECT_FALSE(handshake.write(plc, {2, release}));
   EXPECT_TRUE(handshake.has_waiting());
   EXPECT_FALSE(handshake.take_waiting());
@@ -148,10 +149,7 @@ TEST(Handshake, OnlyStopAndVentSupersedeAnExecutingCommand) {
 }
 
 TEST(Handshake, AQueuedCommandIsExecutedOnce) {
-  Handshake handshake;
-  Cursor plc;
-  EXPECT_FALSE(handshake.write(plc, {0, none}));
-  EXPECT_TRUE(handshake.write(plc, {1, release}));
+  auto [handshake, plc] = executing(release);
   EXPECT_FALSE(handshake.write(plc, {2, start}));
   EXPECT_FALSE(handshake.write(plc, {2, start}));
   EXPECT_FALSE(plc.refused);
@@ -164,10 +162,7 @@ TEST(Handshake, AQueuedCommandIsExecutedOnce) {
 }
 
 TEST(Handshake, AQueuedCommandIsRefusedAfterAnInternalStop) {
-  Handshake handshake;
-  Cursor plc;
-  EXPECT_FALSE(handshake.write(plc, {0, none}));
-  EXPECT_TRUE(handshake.write(plc, {1, release}));
+  auto [handshake, plc] = executing(release);
   EXPECT_FALSE(handshake.write(plc, {2, start}));
   handshake.refuse_waiting(Reason::client_silent);
   handshake.finish(1, Outcome::accepted);
