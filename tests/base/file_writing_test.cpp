@@ -19,17 +19,14 @@ namespace fs = std::filesystem;
 
 class FileWritingTest : public testing::Test {
  protected:
-  FileWritingTest() {
-    fs::create_directories(folder_);
-    EXPECT_TRUE(create_file(path_, "old"));
-  }
-  ~FileWritingTest() override { fs::remove_all(folder_); }
+  FileWritingTest() { EXPECT_TRUE(create_file(path_, "old")); }
   static std::string text(const fs::path& path) { return read_file(path.string(), 1000).value_or("?"); }
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("softgrip_files_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   std::string path_ = (folder_ / "rig.yaml").string();
 };
 

@@ -6,21 +6,17 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "rig/check.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::broken_test {
 namespace {
 
 const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/config";
 
-std::string text_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
+using test::text_of;
 
 std::vector<std::string> names() {
   std::vector<std::string> result;

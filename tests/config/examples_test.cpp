@@ -2,15 +2,15 @@
 // configurations are consistent with each other.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 
+#include "base/files.h"
 #include "rig/check.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::examples_test {
 namespace {
@@ -68,8 +68,7 @@ void collect_keys(const document::Node& node, std::set<std::string>& keys) {
 
 TEST(Examples, UseOnlyKeysThatTheManualDescribes) {
   const std::string root = SOFTGRIP_SOURCE_DIR;
-  std::ostringstream manual;
-  manual << std::ifstream(root + "/docs/reference/rig-file.md").rdbuf();
+  const std::string manual = test::text_of(root + "/docs/reference/rig-file.md");
   std::set<std::string> keys;
   document::Problems problems;
   for (const char* const name : {"rig.yaml", "rig_tcp.yaml", "rig_rtu.yaml", "rig_iio.yaml",
@@ -77,7 +76,7 @@ TEST(Examples, UseOnlyKeysThatTheManualDescribes) {
     collect_keys(document::parse_file(root + "/config/" + name, problems).root, keys);
   }
   EXPECT_GE(keys.size(), 70U);
-  for (const std::string& key : keys) EXPECT_NE(manual.str().find(key + "`"), std::string::npos) << key;
+  for (const std::string& key : keys) EXPECT_NE(manual.find(key + "`"), std::string::npos) << key;
 }
 
 TEST(Check, AFileGivenTwiceIsReadOnce) {
@@ -114,14 +113,11 @@ TEST(Check, AFolderIncludesAllFilesAndEachFileOnce) {
 class CheckFolder : public ::testing::Test {
  protected:
   CheckFolder() { std::filesystem::create_directories(folder_ / "sub/.hidden"); }
-  ~CheckFolder() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   using Changes = std::vector<std::pair<std::string, std::string>>;
   /// Replaces the given texts in a copy of the shipped simulated rig and writes the copy to a file.
   void write_rig(Changes changes) {
-    std::ostringstream read;
-    read << std::ifstream(config_ / "rig.yaml").rdbuf();
-    std::string text = read.str();
+    std::string text = test::text_of(config_ / "rig.yaml");
     changes.emplace_back("models/", (config_ / "models/").string());
     for (const auto& [old, now] : changes) {
       ASSERT_NE(text.find(old), std::string::npos) << old;
@@ -135,8 +131,8 @@ class CheckFolder : public ::testing::Test {
     return report.problems.format().find(words) != std::string::npos;
   }
   std::filesystem::path config_ = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("softgrip_check_folder_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(CheckFolder, FilesOfUnknownKindAreSkipped) {

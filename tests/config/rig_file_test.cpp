@@ -11,10 +11,10 @@
 #include <fstream>
 #include <functional>
 #include <set>
-#include <sstream>
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::rig_file_test {
 namespace {
@@ -80,9 +80,7 @@ TEST(RigFile, TheBenchRigHasTheValuesOfTheFile) {
 /// Reads rig.yaml with the text `from` replaced by `to`.
 std::optional<rig::RigFile> read_replaced(const std::string& from, const std::string& to,
                                           Problems& problems) {
-  std::ostringstream shipped_text;
-  shipped_text << std::ifstream(shipped("rig.yaml")).rdbuf();
-  std::string text = shipped_text.str();
+  std::string text = test::text_of(shipped("rig.yaml"));
   text.replace(text.find(from), from.size(), to);
   return rig::read_rig(document::parse(shipped("rig.yaml"), text, problems), problems);
 }
@@ -395,8 +393,7 @@ TEST(RestPressure, ADifferentPressureWithoutPowerCausesAWarning) {
 TEST(RigFile, AModelWithALagOrAGainBeyondTheLimitsOfAControllerIsRefused) {
   const ScratchFolder folder;
   const auto problems_with = [&](const std::string& old, const std::string& now) {
-    std::ifstream shipped_model(shipped("models/bench_twin.yaml"));
-    std::string text{std::istreambuf_iterator<char>(shipped_model), {}};
+    std::string text = test::text_of(shipped("models/bench_twin.yaml"));
     text.replace(text.find(old), old.size(), now);
     std::ofstream(folder.path() + "/changed.yaml") << text;
     Problems problems;

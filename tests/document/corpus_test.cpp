@@ -5,9 +5,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+
+#include "tests/support/files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -18,8 +18,7 @@ TEST(Corpus, NoCorpusFileCrashesTheParser) {
   std::size_t files = 0;
   const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/document/corpus";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string text = test::text_of(entry.path());
     const std::string whole =
         text + text;  // the second copy begins a second document or continues the last line of the first copy
     for (const std::string& input : {text, whole, text.substr(text.size() / 2)}) {

@@ -282,13 +282,11 @@ TEST(ParseFile, RefusesADeviceAndAPipeWithoutWaiting) {
 }
 
 TEST(ParseFile, ReadsTheContentOfAFile) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("softgrip_parse_" + std::to_string(::getpid()) + ".yaml"))
-          .string();
+  const ScratchFolder scratch;
+  const std::string path = scratch.path() + "/a.yaml";
   std::ofstream(path) << "a: 1\n";
   Problems problems;
   const Document document = parse_file(path, problems);
-  std::filesystem::remove(path);
   EXPECT_TRUE(problems.empty());
   EXPECT_EQ(document.file, path);
   EXPECT_EQ(document.text, "a: 1\n");

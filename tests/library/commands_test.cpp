@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stop_token>
 #include <thread>
 
@@ -20,6 +19,7 @@
 #include "library/include/softgrip/softgrip.h"
 #include "library/include/softgrip/validate.h"
 #include "tests/library/finger.h"
+#include "tests/support/files.h"
 
 // GCC 12 incorrectly warns that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -51,8 +51,8 @@ class LibraryAndCommand : public testing::Test {
     const std::string command =
         std::string(SOFTGRIP_PROGRAM) + " " + arguments + " >" + output + " 2>" + path("errors");
     const int status = std::system(command.c_str());
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
-    return text_of(output);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << test::text_of(path("errors"));
+    return test::text_of(output);
   }
   /// Removes the keys `without` from the JSON and returns the result. The values of these keys differ from
   /// call to call.
@@ -60,12 +60,6 @@ class LibraryAndCommand : public testing::Test {
     Json json = Json::parse(text);
     for (const char* key : without) json.erase(key);
     return json;
-  }
-
-  static std::string text_of(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
   }
 
   std::string model_;
@@ -220,9 +214,9 @@ TEST_F(LibraryAndCommand, HealthResultsAreIdentical) {
   options.progress = [&](const std::string& stage) { stages.push_back(stage); };
   const Health found = health(recordings, path("base"), options);
   EXPECT_EQ(plain(found.json, {"made", "made_unix_s"}), expected);
-  EXPECT_EQ(text_of(options.scores), text_of(path("health/health-scores.jsonl")));
+  EXPECT_EQ(test::text_of(options.scores), test::text_of(path("health/health-scores.jsonl")));
   ASSERT_EQ(found.fingers.size(), 1U);
-  EXPECT_EQ(found.fingers[0].html, text_of(path("health/health.html")));
+  EXPECT_EQ(found.fingers[0].html, test::text_of(path("health/health.html")));
   EXPECT_EQ(found.fingers[0].points.size(), 3U);
   ASSERT_EQ(found.fingers[0].indicators.size(), 9U);
   EXPECT_EQ(found.fingers[0].indicators[0].values.size(), 3U);

@@ -10,6 +10,7 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
+#include "tests/support/files.h"
 
 namespace softgrip::model {
 namespace {
@@ -145,10 +146,7 @@ int main(int argc, char** argv) {
     return file.flush() ? 0 : 4;
   }
   if (mode == "--check") {
-    std::ifstream file(file_name, std::ios::binary);
-    std::ostringstream found;
-    found << file.rdbuf();
-    if (found.str() == text) return 0;
+    if (softgrip::test::text_of(file_name) == text) return 0;
     std::cerr << file_name << " differs from the declarations; run model_blocks_page --write\n";
     return 1;
   }

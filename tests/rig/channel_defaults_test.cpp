@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include "rig/rig_file.h"
+#include "tests/support/files.h"
 
 namespace softgrip::rig::channel_defaults_test {
 namespace {
@@ -20,11 +20,7 @@ const std::string path = std::string(SOFTGRIP_SOURCE_DIR) + "/config/rig.yaml";
 
 class ChannelDefaultsTest : public ::testing::Test {
  protected:
-  ChannelDefaultsTest() {
-    std::ostringstream read;
-    read << std::ifstream(path).rdbuf();
-    text = read.str();
-  }
+  ChannelDefaultsTest() { text = test::text_of(path); }
   void change(const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;

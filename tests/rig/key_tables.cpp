@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 #include <string>
 
 #include "control/sequences/sequence_keys.h"
@@ -15,6 +14,7 @@
 #include "rig/rig_keys.h"
 #include "rig/web_file/settings.h"
 #include "simulation/emulator/fault.h"
+#include "tests/support/files.h"
 
 namespace softgrip::rig {
 namespace {
@@ -35,12 +35,6 @@ std::vector<Page> pages() {
 
 const std::string end_mark = "<!-- end of keys -->\n";
 
-std::string text_of_file(const std::string& name) {
-  std::ostringstream text;
-  text << std::ifstream(name, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 std::string table_of(const std::vector<document::KeyFacts>& keys) {
   std::string table = "| key | values | default | meaning |\n|---|---|---|---|\n";
   for (const document::KeyFacts& key : keys) {
@@ -53,7 +47,7 @@ std::string table_of(const std::vector<document::KeyFacts>& keys) {
 /// Returns the page with the tables of the declarations. The exit code is 1 if the page lacks a table, or has
 /// a table that is not declared.
 std::string text_of(const Page& page, int& exit_code) {
-  std::string text = text_of_file(page.name);
+  std::string text = softgrip::test::text_of(page.name);
   std::ptrdiff_t marks = 0;
   for (const auto& [name, keys] : page.tables) {
     const std::string mark = "<!-- keys: " + name + " -->\n";
@@ -91,7 +85,7 @@ int main(int argc, char** argv) {
       std::ofstream file(page.name, std::ios::binary);
       file << text;
       if (!file.flush()) return 4;
-    } else if (mode == "--check" && text_of_file(page.name) != text) {
+    } else if (mode == "--check" && softgrip::test::text_of(page.name) != text) {
       std::cerr << page.name << " differs from the declarations; run key_tables --write\n";
       exit_code = 1;
     } else if (mode != "--check") {

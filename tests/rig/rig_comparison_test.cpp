@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <regex>
-#include <sstream>
 #include <string>
 
 #include "control/sequences/sequence_file.h"
+#include "tests/support/files.h"
 
 namespace softgrip::rig::rig_comparison_test {
 namespace {
@@ -19,11 +18,7 @@ const std::string folder = std::string(SOFTGRIP_SOURCE_DIR) + "/config/";
 
 class RigComparisonTest : public ::testing::Test {
  protected:
-  RigComparisonTest() {
-    std::ostringstream read;
-    read << std::ifstream(folder + "rig.yaml").rdbuf();
-    text = read.str();
-  }
+  RigComparisonTest() { text = test::text_of(folder + "rig.yaml"); }
   void change(const std::string& pattern, const std::string& to) {
     const std::string changed = std::regex_replace(text, std::regex(pattern), to);
     ASSERT_NE(changed, text) << pattern;

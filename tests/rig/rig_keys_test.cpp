@@ -6,12 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "document/node.h"
+#include "tests/support/files.h"
 #include "tools/commissioning/rig_template.h"
 
 namespace softgrip::rig::rig_keys_test {
@@ -117,9 +116,8 @@ TEST(RigKeys, ContainEveryKeyOfTheTemplateOfInit) {
 TEST(RigKeys, ContainEveryKeyOfTheRigFilesInConfig) {
   std::size_t files = 0;
   for (const char* const name : {"rig", "rig_planned", "rig_tcp", "rig_rtu", "rig_iio", "rig_service"}) {
-    std::ostringstream text;
-    text << std::ifstream(std::string(SOFTGRIP_SOURCE_DIR) + "/config/" + name + ".yaml").rdbuf();
-    const Found found = keys_in(text.str());
+    const Found found =
+        keys_in(test::text_of(std::string(SOFTGRIP_SOURCE_DIR) + "/config/" + name + ".yaml"));
     EXPECT_GE(found.keys, 60U) << name;
     EXPECT_EQ(found.undeclared, Names{}) << name;
     ++files;

@@ -6,20 +6,20 @@
 #include <fstream>
 #include <string>
 
+#include "base/files.h"
+
 namespace softgrip::rig::socket_path_test {
 namespace {
 
 class SocketPath : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string write(const std::string& text) {
     const std::string path = folder_ / "rig.yaml";
     std::ofstream(path) << text;
     return path;
   }
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("socket_path_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(SocketPath, IsReadFromARigFileWithOtherErrors) {

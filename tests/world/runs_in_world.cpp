@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "base/files.h"
 #include "base/random.h"
 #include "sysid/diagnosis/experiments/experiment.h"
-#include "tests/daemon/temporary_folder.h"
 #include "tools/baseline/commissioning_run.h"
 #include "tools/investigation/experiment_rig.h"
 
@@ -154,7 +154,7 @@ class Experiment final : public Experiments {
 
  private:
   bool call() override {
-    const daemon::testing::TemporaryFolder folder;
+    const ScratchFolder folder;
     const tools::ExperimentRig rig = world_rig();
     const std::vector<sysid::Waveform> menu = sysid::experiment_menu(rig.limits(0, 0));
     sysid::NextExperiment experiment;

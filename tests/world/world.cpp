@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "tests/daemon/temporary_folder.h"
+#include "base/files.h"
 #include "tests/world/daemon_in_world.h"
 #include "tests/world/guest.h"
 #include "tests/world/motion_world.h"
@@ -312,7 +311,7 @@ class World final : public Host {
   const Library& library_;
   const WorldOptions& options_;
   WorldResult result_;
-  daemon::testing::TemporaryFolder folder_;
+  ScratchFolder folder_;
   Surroundings around_;
   Scheduler& scheduler_ = around_.scheduler;
   Hardware& hardware_ = around_.hardware;

@@ -1,9 +1,9 @@
 #include "control/elements/fault.h"
+#include "tests/support/files.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
@@ -79,8 +79,7 @@ std::string table() {
 }
 
 TEST(Faults, TheManualTablesEqualTheTablesOfTheCode) {
-  std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/faults.md");
-  const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string manual = test::text_of(SOFTGRIP_SOURCE_DIR "/docs/reference/faults.md");
   EXPECT_NE(manual.find(table()), std::string::npos)
       << "the table in docs/reference/faults.md must be equal to this table:\n"
       << table();

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "tests/control/settings_fixture.h"
+#include "tests/support/files.h"
 
 namespace softgrip::control::sequence_file_test {
 namespace {
@@ -314,8 +313,7 @@ TEST(SequenceFile, AMissingOrBrokenFileGivesNoSequence) {
 }
 
 TEST(SequenceFile, TheExampleOfTheManualIsAValidSequence) {
-  std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/sequence-file.md");
-  const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string manual = test::text_of(SOFTGRIP_SOURCE_DIR "/docs/reference/sequence-file.md");
   const std::size_t begin = manual.find("```yaml\n");
   ASSERT_NE(begin, std::string::npos);
   const std::size_t text = begin + 8;

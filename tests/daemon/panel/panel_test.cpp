@@ -2,6 +2,7 @@
 // simulated board.
 
 #include "daemon/panel/panel.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -21,7 +22,6 @@
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/scripted_lines.h"
 #include "tests/daemon/service/softgripd_process.h"
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::daemon::panel_test {
 namespace {
@@ -364,7 +364,7 @@ class PanelOfDaemon : public ::testing::Test {
   nlohmann::json ask(const std::string& command) { return client_->ask({{"command", command}}); }
 
   sigset_t before_{};
-  testing::TemporaryFolder folder_;
+  ScratchFolder folder_;
   Terminals terminals_;
   std::unique_ptr<Daemon> daemon_;
   Outcome outcome_;

@@ -12,16 +12,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "base/periodic_schedule.h"
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::recorder_test {
 namespace {
 
 using control::Event;
 using control::State;
-using testing::TemporaryFolder;
-using testing::text_of;
+using test::text_of;
 
 constexpr Nanoseconds period = 10'000'000;
 
@@ -93,7 +93,7 @@ class RecorderTest : public ::testing::Test {
     return result;
   }
 
-  TemporaryFolder temporary_;
+  ScratchFolder temporary_;
   rig::RecorderSettings settings_;
   Provenance provenance_;
   std::string only_folder_;

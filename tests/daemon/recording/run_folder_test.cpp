@@ -8,13 +8,13 @@
 #include <fstream>
 #include <string>
 
-#include "tests/daemon/temporary_folder.h"
+#include "base/files.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::run_folder_test {
 namespace {
 
-using testing::TemporaryFolder;
-using testing::text_of;
+using test::text_of;
 
 /// Limits the size of every file to `bytes`, so that a larger write fails as it does on a full disk.
 class SmallDisk {
@@ -43,14 +43,14 @@ std::size_t files_in(const std::string& folder) {
 }
 
 TEST(RunFolder, CreatesTheFolderAndTheHeaderLine) {
-  const TemporaryFolder temporary;
+  const ScratchFolder temporary;
   const auto folder = RunFolder::create(temporary.path() + "/a/b", "time_s\n", true);
   ASSERT_TRUE(folder) << folder.error();
   EXPECT_EQ(text_of(temporary.path() + "/a/b/run.csv"), "time_s\n");
 }
 
 TEST(RunFolder, NeverOverwritesARecording) {
-  const TemporaryFolder temporary;
+  const ScratchFolder temporary;
   ASSERT_TRUE(RunFolder::create(temporary.path(), "first\n", true));
   const auto second = RunFolder::create(temporary.path(), "second\n", true);
   ASSERT_FALSE(second);
@@ -65,7 +65,7 @@ TEST(RunFolder, AFailedCreationNamesThePath) {
 }
 
 TEST(RunFolder, AFullDiskLeavesWholeLinesAndAPermanentError) {
-  const TemporaryFolder temporary;
+  const ScratchFolder temporary;
   auto folder = RunFolder::create(temporary.path(), "header\n", true);
   ASSERT_TRUE(folder);
   ASSERT_TRUE(folder->append("0,1\n"));
@@ -82,7 +82,7 @@ TEST(RunFolder, AFullDiskLeavesWholeLinesAndAPermanentError) {
 
 TEST(RunFolder, SymbolicLinksAreNeverFollowedOnWriting) {
   namespace fs = std::filesystem;
-  const TemporaryFolder temporary;
+  const ScratchFolder temporary;
   const std::string victim = temporary.path() + "/victim";
   std::ofstream(victim) << "mine";
   const std::string path = temporary.path() + "/run";
@@ -101,7 +101,7 @@ TEST(RunFolder, SymbolicLinksAreNeverFollowedOnWriting) {
 }
 
 TEST(RunFolder, AFailedReplacementKeepsTheOldRunJson) {
-  const TemporaryFolder temporary;
+  const ScratchFolder temporary;
   auto folder = RunFolder::create(temporary.path(), "header\n", true);
   ASSERT_TRUE(folder);
   ASSERT_TRUE(folder->replace_json("{\"a\":1}"));

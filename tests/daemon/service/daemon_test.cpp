@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/files.h"
 #include "tests/daemon/rig_under_test.h"
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::daemon::daemon_test {
 namespace {
@@ -74,7 +74,7 @@ TEST(Daemon, ReportsRemainingPressureFor5KpaAndNotFor50Pa) {
 }
 
 TEST(Daemon, AnExceptionInACallbackEndsWithSafeOutputs) {
-  const testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   rig::RigFile rig = testing::example_rig("rig.yaml");
   rig.recorder.mode = rig::RecorderSettings::Mode::off;
   rig.real_time = {};

@@ -1,11 +1,10 @@
 #include "daemon/service/named_device.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
-
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::daemon::named_device_test {
 namespace {
@@ -29,7 +28,7 @@ TEST(NamedDevice, FindsOnlyTheChipThatTheRigNames) {
 }
 
 TEST(NamedDevice, FindsAConverterAndTheWrittenOutputAttributes) {
-  const testing::TemporaryFolder root;
+  const ScratchFolder root;
   for (const auto& [device, name] :
        {std::pair{"iio:device0", "ads1115"}, {"iio:device1", "dac7578"}, {"iio:device2", "other"}}) {
     std::filesystem::create_directory(root.path() + "/" + device);

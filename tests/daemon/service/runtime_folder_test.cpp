@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/daemon/temporary_folder.h"
+#include "base/files.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::runtime_folder_test {
 namespace {
@@ -28,7 +29,7 @@ class RuntimeFolderTest : public ::testing::Test {
     return status.st_mode & 07777U;
   }
 
-  testing::TemporaryFolder parent_;
+  ScratchFolder parent_;
   std::string place_;
 };
 
@@ -140,7 +141,7 @@ class KeptRig : public ::testing::Test {
     fs::resize_file(path, fs::file_size(path) / 2);
   }
 
-  testing::TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::string path_ = folder_.path() + "/config/rig_tcp.yaml";
 };
 
@@ -169,7 +170,7 @@ TEST_F(KeptRig, EqualsTheRunRigAfterTheFilesAreDamaged) {
 
 TEST_F(KeptRig, TheLastRunReplacesTheKeptRig) {
   ASSERT_TRUE(keep_rig(load(path_)));
-  std::string text = testing::text_of(path_);
+  std::string text = test::text_of(path_);
   const std::size_t at = text.find("\nname: ");
   ASSERT_NE(at, std::string::npos);
   text.insert(at + 7, "later_");
@@ -199,11 +200,11 @@ TEST_F(KeptRig, ADamagedKeptRigIsNotReturned) {
   ASSERT_TRUE(place);
   std::string name;
   for (const auto& entry : fs::directory_iterator(place->path())) {
-    const std::string text = testing::text_of(entry.path());
+    const std::string text = test::text_of(entry.path());
     if (text.find(path_) != std::string::npos) name = entry.path().filename();
   }
   ASSERT_FALSE(name.empty());
-  const std::string whole = testing::text_of(place->path() + "/" + name);
+  const std::string whole = test::text_of(place->path() + "/" + name);
   for (const std::string& damaged :
        {std::string(), whole.substr(0, whole.size() / 2), std::string("[1, 2]"),
         std::string("{\"schema\": \"x\"}"), std::string("{\"schema\": 2}"), std::string(1000, '\0')}) {

@@ -12,8 +12,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "tests/daemon/service/softgripd_process.h"
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::socket_session_test {
 namespace {
@@ -42,7 +43,7 @@ class SocketSession : public ::testing::Test {
     return false;
   }
 
-  testing::TemporaryFolder folder_;
+  ScratchFolder folder_;
   SoftgripdProcess process_;
   ApiClient client_;
 };
@@ -196,7 +197,7 @@ TEST_F(SocketSession, ASequenceCanBeSentAsText) {
   const json reply =
       ask({{"command", "start"},
            {"sequence", "inline.yaml"},
-           {"sequence_text", testing::text_of(SOFTGRIP_SOURCE_DIR "/config/sequences/pick_stone.yaml")}});
+           {"sequence_text", test::text_of(SOFTGRIP_SOURCE_DIR "/config/sequences/pick_stone.yaml")}});
   EXPECT_EQ(reply["ok"], true) << reply;
   EXPECT_TRUE(until_state("running"));
 }

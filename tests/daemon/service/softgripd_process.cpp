@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::testing {
 
@@ -110,12 +110,12 @@ std::optional<int> SoftgripdProcess::wait(double timeout_s) {
 }
 
 std::string SoftgripdProcess::output() const {
-  return text_of(output_path_);
+  return test::text_of(output_path_);
 }
 
 std::string make_rig(const std::string& folder,
                      const std::vector<std::pair<std::string, std::string>>& changes) {
-  std::string text = text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
+  std::string text = test::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
   std::vector<std::pair<std::string, std::string>> all{
       {"cpus: [1]", "cpus: []"},
       {"/tmp/softgrip.sock", folder + "/socket"},

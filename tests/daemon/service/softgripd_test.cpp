@@ -21,18 +21,18 @@
 #include <nlohmann/json.hpp>
 
 #include "base/descriptor.h"
+#include "base/files.h"
 #include "tests/daemon/service/softgripd_process.h"
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::softgripd_test {
 namespace {
 
 using nlohmann::json;
+using test::text_of;
 using testing::ApiClient;
 using testing::make_rig;
 using testing::SoftgripdProcess;
-using testing::TemporaryFolder;
-using testing::text_of;
 
 const std::string sequences = SOFTGRIP_SOURCE_DIR "/config/sequences/";
 constexpr double rate_hz = 200;
@@ -92,7 +92,7 @@ class SoftgripdTest : public ::testing::Test {
     return false;
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
 };
 
 TEST_F(SoftgripdTest, VirtualTimeGivesTheSameBytesFromTheSameSeed) {
@@ -116,7 +116,7 @@ TEST_F(SoftgripdTest, VirtualTimeGivesTheSameBytesFromTheSameSeed) {
 
 TEST_F(SoftgripdTest, AStopSignalLeavesTheSafeOutputsAndACompleteRecording) {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
-    const TemporaryFolder folder;
+    const ScratchFolder folder;
     const std::string record = folder.path() + "/record";
     SoftgripdProcess process(folder.path(),
                              {.arguments = {"--config", make_rig(folder.path()), "--record", record}});

@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "base/descriptor.h"
+#include "base/files.h"
 #include "daemon/socket/listener.h"
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::daemon::trusted_user_test {
 namespace {
@@ -117,7 +117,7 @@ class DaemonAnswers : public ::testing::Test {
     const Replying program(path_, reply);
     return daemon_answers(path_);
   }
-  testing::TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::string path_ = folder_.path() + "/socket";
 };
 

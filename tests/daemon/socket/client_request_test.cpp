@@ -1,4 +1,5 @@
 #include "daemon/socket/client_request.h"
+#include "tests/support/files.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -175,8 +174,7 @@ TEST(ClientRequest, TheFuzzCorpusCausesNoFailure) {
   const std::filesystem::path folder =
       std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/daemon/socket/client_request_corpus";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    const std::string line = test::text_of(entry.path());
     feed(line);
     for (std::size_t i = 0; i < line.size(); ++i) {
       feed(line.substr(0, i));

@@ -18,13 +18,12 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/files.h"
 #include "base/periodic_schedule.h"
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 
 namespace softgrip::daemon::socket_server_test {
 namespace {
-
-using testing::TemporaryFolder;
 
 Descriptor connect_to(const std::string& path) {
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
@@ -81,7 +80,7 @@ class SocketServerTest : public ::testing::Test {
     return text;
   }
 
-  TemporaryFolder temporary_;
+  ScratchFolder temporary_;
   rig::SocketSettings settings_;
   std::optional<SocketServer> server_;
   std::vector<std::string> lines_;
@@ -136,7 +135,7 @@ TEST_F(SocketServerTest, ASecondDaemonIsRefusedAndTheFileRemains) {
 TEST_F(SocketServerTest, AFileThatIsNotASocketIsNotChanged) {
   { std::ofstream(settings_.path) << "precious"; }
   EXPECT_FALSE(SocketServer::listen(settings_));
-  EXPECT_EQ(testing::text_of(settings_.path), "precious");
+  EXPECT_EQ(test::text_of(settings_.path), "precious");
 }
 
 TEST_F(SocketServerTest, FragmentedLinesAreReceivedComplete) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/files.h"
 #include "drivers/gpio/gpio_lines.h"
 #include "tests/drivers/gpio/fake_gpio.h"
 
@@ -32,15 +33,10 @@ GpioLineSettings line(GpioRole role, std::uint32_t offset) {
 class Libgpiod : public ::testing::Test {
  protected:
   void SetUp() override {
-    devices_ = std::filesystem::temp_directory_path() / ("softgrip-gpio-" + std::to_string(::getpid()));
-    std::filesystem::create_directory(devices_);
     add_chip("gpiochip0", "first", 6);
     chips()[0].lines[2].name = "ESTOP";
   }
-  void TearDown() override {
-    chips().clear();
-    std::filesystem::remove_all(devices_);
-  }
+  void TearDown() override { chips().clear(); }
 
   static std::vector<FakeChip>& chips() { return testing::fake_chips(); }
   void add_chip(const std::string& name, const std::string& label, std::size_t lines) {
@@ -54,7 +50,8 @@ class Libgpiod : public ::testing::Test {
     return opened ? GpioFailure{} : opened.error();
   }
 
-  std::filesystem::path devices_;
+  const ScratchFolder scratch_;
+  std::filesystem::path devices_ = scratch_.path();
   std::filesystem::path sys_;  // path of the simulated /sys; empty: the folder does not exist
 };
 

@@ -2,6 +2,7 @@
 // simulate the converters.
 
 #include "drivers/iio/iio_board.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,7 +23,6 @@ namespace fs = std::filesystem;
 class IioBoardTest : public testing::Test {
  protected:
   IioBoardTest() {
-    fs::create_directories(root_);
     // Simulate two converters: an ADC that, like the ADS1115, has one scale per channel, and a DAC that has
     // an offset and one scale for all channels.
     put("iio:device0/name", "ads1115");
@@ -51,7 +51,6 @@ class IioBoardTest : public testing::Test {
       settings_.wiring.push_back(channel);
     }
   }
-  ~IioBoardTest() override { fs::remove_all(root_); }
 
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
@@ -73,7 +72,8 @@ class IioBoardTest : public testing::Test {
     return board.detail();
   }
 
-  const fs::path root_ = fs::temp_directory_path() / ("softgrip_iio_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  const fs::path root_ = scratch_.path();
   IioSettings settings_;
   std::vector<Reading> readings_{2};
 };

@@ -1,7 +1,5 @@
 #include "drivers/iio/iio_device.h"
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -44,12 +42,11 @@ namespace fs = std::filesystem;
 
 class IioScalingTest : public testing::Test {
  protected:
-  IioScalingTest() { fs::create_directories(folder_); }
-  ~IioScalingTest() override { fs::remove_all(folder_); }
   void put(const std::string& file, const std::string& text) const {
     std::ofstream(folder_ / file) << text << "\n";
   }
-  const fs::path folder_ = fs::temp_directory_path() / ("softgrip_iio_scaling_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
 };
 
 TEST_F(IioScalingTest, UsesTheScaleOfTheChannelOrTheSharedScale) {

@@ -5,17 +5,16 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
+
+#include "base/files.h"
+#include "tests/support/files.h"
 
 namespace softgrip::plc::settings_test {
 namespace {
 
 std::string shipped() {
-  std::ifstream file(SOFTGRIP_SOURCE_DIR "/config/plc.yaml");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return test::text_of(SOFTGRIP_SOURCE_DIR "/config/plc.yaml");
 }
 
 /// Replaces the text `was` of the shipped file config/plc.yaml by `is`. Returns the problems of the changed
@@ -25,11 +24,11 @@ std::string said_of(const std::string& was, const std::string& is) {
   const std::size_t at = text.find(was);
   EXPECT_NE(at, std::string::npos) << was;
   text.replace(at, was.size(), is);
-  const auto path = std::filesystem::temp_directory_path() / ("plc_" + std::to_string(::getpid()) + ".yaml");
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/plc.yaml";
   std::ofstream(path) << text;
   document::Problems problems;
   const auto settings = load_settings(path, problems);
-  std::filesystem::remove(path);
   EXPECT_EQ(settings.has_value(), problems.empty());
   return problems.format();
 }

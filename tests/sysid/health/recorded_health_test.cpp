@@ -1,7 +1,6 @@
 #include "sysid/health/recorded_health.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -19,11 +18,6 @@ namespace {
 class Recorded : public ::testing::Test {
  protected:
   Recorded() { write_baseline("baseline", 20); }
-  ~Recorded() override { std::filesystem::remove_all(folder); }
-  Recorded(const Recorded&) = delete;
-  Recorded& operator=(const Recorded&) = delete;
-  Recorded(Recorded&&) = delete;
-  Recorded& operator=(Recorded&&) = delete;
 
   [[nodiscard]] std::string at(const std::string& name) const { return (folder / name).string(); }
   [[nodiscard]] static std::string rows(const std::string& finger, double largest_kpa) {
@@ -54,8 +48,8 @@ class Recorded : public ::testing::Test {
     return asked;
   }
 
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("softgrip_recorded_health_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  std::filesystem::path folder = scratch.path();
 };
 
 TEST_F(Recorded, FingerUsesAnOwnBaselineOrTheRigBaseline) {

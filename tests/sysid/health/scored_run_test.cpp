@@ -1,7 +1,6 @@
 #include "sysid/health/scored_run.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -54,13 +53,6 @@ TEST(ScoredRun, TruncatedLineDoesNotAffectOtherLines) {
 
 class FoundRuns : public ::testing::Test {
  protected:
-  ~FoundRuns() override { std::filesystem::remove_all(folder); }
-  FoundRuns() = default;
-  FoundRuns(const FoundRuns&) = delete;
-  FoundRuns& operator=(const FoundRuns&) = delete;
-  FoundRuns(FoundRuns&&) = delete;
-  FoundRuns& operator=(FoundRuns&&) = delete;
-
   /// Writes a recording whose run.json contains this text. Without a text, writes no run.json. Returns the
   /// folder of the recording.
   [[nodiscard]] std::string run(const std::string& name, const std::string& story) const {
@@ -79,8 +71,8 @@ class FoundRuns : public ::testing::Test {
     return score_runs(find_runs({folder.string()}), [&](const std::string&) { return &base; }, {});
   }
 
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("softgrip_found_runs_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  std::filesystem::path folder = scratch.path();
 };
 
 TEST_F(FoundRuns, AreTheRecordingsOfAFolderSortedByName) {

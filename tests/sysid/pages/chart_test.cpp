@@ -14,6 +14,7 @@
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_scale.h"
 #include "sysid/pages/figure.h"
+#include "tests/support/text.h"
 
 namespace softgrip::sysid::chart_test {
 namespace {
@@ -164,12 +165,6 @@ std::string to_svg(const Chart& chart) {
   return to_svg(std::vector<Chart>{chart});
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
-
 Chart a_chart() {
   Chart chart;
   chart.title = "Overlay <of> \"a\" & b";
@@ -206,7 +201,9 @@ TEST(Chart, TagsAreBalanced) {
   }
   const std::string svg = to_svg({chart, chart});
   for (const std::string tag : {"svg", "g", "text"}) {
-    EXPECT_EQ(count(svg, "<" + tag + " ") + count(svg, "<" + tag + ">"), count(svg, "</" + tag + ">")) << tag;
+    EXPECT_EQ(test::count_of(svg, "<" + tag + " ") + test::count_of(svg, "<" + tag + ">"),
+              test::count_of(svg, "</" + tag + ">"))
+        << tag;
   }
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
@@ -257,7 +254,7 @@ TEST(Chart, SeriesAndLegendUseTheDashPattern) {
   Chart chart = a_chart();
   chart.series.front().dash = Dash::dotted;
   // the curve and the legend each contain the dotted line once
-  EXPECT_EQ(count(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
+  EXPECT_EQ(test::count_of(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
 }
 
 TEST(Figure, CsvContainsAllValuesOfTheFigure) {
@@ -285,8 +282,8 @@ TEST(Chart, CategoryChartDrawsSquareAndRoundPoints) {
                   points_over_names("round", Colour::model, {2, nan_value, 1})};
   const std::string svg = to_svg(chart);
   for (const char* name : {"first", "second", "third"}) EXPECT_NE(svg.find(name), std::string::npos) << name;
-  EXPECT_EQ(count(svg, "h.1"), 3U);
-  EXPECT_EQ(count(svg, "h0"), 2U);
+  EXPECT_EQ(test::count_of(svg, "h.1"), 3U);
+  EXPECT_EQ(test::count_of(svg, "h0"), 2U);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -15,13 +14,6 @@ const std::string csv = "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1
 
 class RecordingTest : public ::testing::Test {
  protected:
-  RecordingTest() { std::filesystem::create_directories(folder); }
-  ~RecordingTest() override { std::filesystem::remove_all(folder); }
-  RecordingTest(const RecordingTest&) = delete;
-  RecordingTest& operator=(const RecordingTest&) = delete;
-  RecordingTest(RecordingTest&&) = delete;
-  RecordingTest& operator=(RecordingTest&&) = delete;
-
   void write(const std::string& name, const std::string& text) const {
     ASSERT_TRUE(write_file(folder / name, text));
   }
@@ -30,8 +22,8 @@ class RecordingTest : public ::testing::Test {
     return read_recording(folder, problems);
   }
 
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("softgrip_recording_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  std::filesystem::path folder = scratch.path();
 };
 
 TEST_F(RecordingTest, InvalidRecordingIsRefused) {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/files.h"
 #include "base/net/listener.h"
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::tools::daemon_client_test {
 namespace {
@@ -24,10 +24,7 @@ using Json = nlohmann::ordered_json;
 /// connection.
 class ScriptedDaemon {
  public:
-  explicit ScriptedDaemon(std::string reply)
-      : folder_(std::filesystem::temp_directory_path() / ("softgrip_client_" + std::to_string(::getpid()))),
-        reply_(std::move(reply)) {
-    std::filesystem::create_directories(folder_);
+  explicit ScriptedDaemon(std::string reply) : reply_(std::move(reply)) {
     listener_ = std::move(*net::listen_unix(path()));
     thread_ = std::thread([this] { serve(); });
   }
@@ -35,12 +32,9 @@ class ScriptedDaemon {
   ScriptedDaemon& operator=(const ScriptedDaemon&) = delete;
   ScriptedDaemon(ScriptedDaemon&&) = delete;
   ScriptedDaemon& operator=(ScriptedDaemon&&) = delete;
-  ~ScriptedDaemon() {
-    thread_.join();
-    std::filesystem::remove_all(folder_);
-  }
+  ~ScriptedDaemon() { thread_.join(); }
 
-  [[nodiscard]] std::string path() const { return folder_ / "daemon.sock"; }
+  [[nodiscard]] std::string path() const { return folder_.path() + "/daemon.sock"; }
 
  private:
   void serve() {
@@ -58,7 +52,7 @@ class ScriptedDaemon {
                                                     // separate call
   }
 
-  std::filesystem::path folder_;
+  const ScratchFolder folder_;
   std::string reply_;
   Descriptor listener_;
   std::thread thread_;
@@ -80,14 +74,9 @@ TEST(DaemonClient, ReturnsTheResultOfASuccessfulReply) {
 class HangingDaemon : public ::testing::Test {
  protected:
   HangingDaemon() : listener_(std::move(*net::listen_unix(path_))) {}
-  ~HangingDaemon() override { ::unlink(path_.c_str()); }
-  HangingDaemon(const HangingDaemon&) = delete;
-  HangingDaemon& operator=(const HangingDaemon&) = delete;
-  HangingDaemon(HangingDaemon&&) = delete;
-  HangingDaemon& operator=(HangingDaemon&&) = delete;
 
-  std::string path_ =
-      std::filesystem::temp_directory_path() / ("softgrip_hangs_" + std::to_string(::getpid()));
+  const ScratchFolder folder_;
+  std::string path_ = folder_.path() + "/daemon.sock";
   Descriptor listener_;
 };
 
@@ -113,22 +102,17 @@ TEST(DaemonClient, ErrorStatesHowToProceedIfNoDaemonListens) {
   EXPECT_EQ(absent.error().code, ExitCode::io);
   EXPECT_NE(absent.error().message.find("softgripd --config"), std::string::npos);
 
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("softgrip_left_over_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  const std::string path = folder / "left.sock";
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/left.sock";
   { const auto listener = net::listen_unix(path); }
   const auto left_over = DaemonClient::connect(path);
   ASSERT_FALSE(left_over);
   EXPECT_NE(left_over.error().message.find("no process listens"), std::string::npos);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(DaemonClient, ConnectAtOnceFailsIfTheConnectionQueueIsFull) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("softgrip_full_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  const std::string path = folder / "full.sock";
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/full.sock";
   const auto listener = net::listen_unix(path);
   ASSERT_TRUE(listener);
   std::vector<DaemonClient> waiting;
@@ -139,7 +123,6 @@ TEST(DaemonClient, ConnectAtOnceFailsIfTheConnectionQueueIsFull) {
   EXPECT_EQ(client.error().code, ExitCode::io);
   EXPECT_NE(client.error().message.find("accepts no connection"), std::string::npos);
   EXPECT_FALSE(client.error().no_listener);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(DaemonClient, MapsRefusalsToExitCodes) {
@@ -172,7 +155,7 @@ using Json = nlohmann::ordered_json;
 /// A listening socket in place of a daemon. The test accepts the connection and sends the lines of the
 /// daemon.
 struct SilentDaemon {
-  daemon::testing::TemporaryFolder folder;
+  ScratchFolder folder;
   std::string path = folder.path() + "/daemon.sock";
   Descriptor listener = std::move(*net::listen_unix(path));
 };

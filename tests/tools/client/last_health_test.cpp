@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -17,13 +16,6 @@ using Json = nlohmann::ordered_json;
 
 class LastHealth : public ::testing::Test {
  protected:
-  ~LastHealth() override { std::filesystem::remove_all(recordings); }
-  LastHealth() = default;
-  LastHealth(const LastHealth&) = delete;
-  LastHealth& operator=(const LastHealth&) = delete;
-  LastHealth(LastHealth&&) = delete;
-  LastHealth& operator=(LastHealth&&) = delete;
-
   [[nodiscard]] Json read(const std::string& text) const {
     EXPECT_TRUE(write_file((recordings / "health/health.json").string(), text));
     return last_health(recordings.string());
@@ -39,8 +31,8 @@ class LastHealth : public ::testing::Test {
     return read(json.dump());
   }
 
-  std::filesystem::path recordings =
-      std::filesystem::temp_directory_path() / ("softgrip_last_health_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  std::filesystem::path recordings = scratch.path();
 };
 
 TEST_F(LastHealth, ReportsTheChangedFingerAndTheFirstNextStep) {

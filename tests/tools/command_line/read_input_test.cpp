@@ -1,11 +1,10 @@
+#include "base/files.h"
 #include "tools/command_line/input_files.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <optional>
-
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::tools::read_input_test {
 namespace {
@@ -15,14 +14,14 @@ std::optional<int> refused(const std::string& path, document::Problems& problems
   return std::nullopt;
 }
 
-std::string file_in(const daemon::testing::TemporaryFolder& folder) {
+std::string file_in(const ScratchFolder& folder) {
   const std::string path = folder.path() + "/input.txt";
   std::ofstream(path) << "7\n";
   return path;
 }
 
 TEST(ReadInput, ReturnsWhatTheReaderReturns) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string path = file_in(folder);
   const auto read = read_input(path, [&](const std::string& file, document::Problems&) {
     EXPECT_EQ(file, path);
@@ -33,7 +32,7 @@ TEST(ReadInput, ReturnsWhatTheReaderReturns) {
 }
 
 TEST(ReadInput, PrintsTheProblemsOfARefusedFile) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   ::testing::internal::CaptureStderr();
   const auto read = read_input(file_in(folder), refused);
   EXPECT_NE(::testing::internal::GetCapturedStderr().find("input.txt:1:1"), std::string::npos);
@@ -42,7 +41,7 @@ TEST(ReadInput, PrintsTheProblemsOfARefusedFile) {
 }
 
 TEST(ReadInput, ReportsAFileThatCannotBeOpenedAsAnIoError) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   ::testing::internal::CaptureStderr();
   const auto read = read_input(folder.path() + "/none.txt", refused);
   EXPECT_NE(::testing::internal::GetCapturedStderr().find("none.txt"), std::string::npos);

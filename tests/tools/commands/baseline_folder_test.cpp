@@ -6,7 +6,6 @@
 
 #include "base/files.h"
 #include "sysid/changes/baseline_folder.h"
-#include "tests/daemon/temporary_folder.h"
 #include "tools/commands/diagnose_change.h"
 
 namespace softgrip::tools::baseline_folder_test {
@@ -21,7 +20,7 @@ class BaselineFolder : public ::testing::Test {
     contents_.healthy = files_of({log}).value();
   }
 
-  daemon::testing::TemporaryFolder temporary_;
+  ScratchFolder temporary_;
   std::string folder_ = temporary_.path();
   BaselineContents contents_;
 };

@@ -12,16 +12,15 @@
 #include <sstream>
 #include <vector>
 
+#include "base/files.h"
+#include "tests/support/files.h"
+
 namespace softgrip::tools::check_test {
 namespace {
 
 const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/config";
 
-std::string text_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
+using test::text_of;
 
 struct Outcome {
   int exit_code = -1;
@@ -29,17 +28,11 @@ struct Outcome {
   std::string errors;
 };
 
-/// Creates a folder for the files of this process and returns its path. The folder is removed when the
-/// process ends.
+/// Returns the path of a folder for the files of this process. The folder is removed when the process ends.
 const std::filesystem::path& scratch() {
-  struct Folder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("softgrip_check_" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() { std::filesystem::remove_all(path); }
-  };
-  static const Folder folder_of_process;
-  return folder_of_process.path;
+  static const ScratchFolder folder_of_process;
+  static const std::filesystem::path path = folder_of_process.path();
+  return path;
 }
 
 /// Runs `softgrip check ARGUMENTS` in the folder tests/config.

@@ -14,7 +14,7 @@
 #include "rig/rig_file.h"
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
-#include "tests/daemon/temporary_folder.h"
+#include "tests/support/files.h"
 #include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
 #include "tools/commissioning/calibration_results.h"
@@ -165,6 +165,18 @@ class CalibrateTest : public ::testing::Test {
   simulation::SimulatedBoardSettings& simulated() {
     return std::get<simulation::SimulatedBoardSettings>(rig_.board);
   }
+  void sensor_fault(simulation::SensorFault::Kind kind) {
+    simulation::SimulatedEvent event;
+    event.kind = simulation::SimulatedEvent::Kind::sensor_fault;
+    event.sensor.kind = kind;
+    simulated().events.push_back(event);
+  }
+  /// Calibrates the sensor with an operator who knows the true displacement.
+  auto calibrate_with_the_truth() {
+    make();
+    KnowingOperator person([this] { return truth_mm(); });
+    return calibrate_sensor(rig_, *session_, person, settings_);
+  }
   void make() {
     board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
     session_ = std::make_unique<MotionSession>(rig_, *board_, time_.clock, time_.stop());
@@ -225,13 +237,8 @@ TEST_F(CalibrateTest, FindsNoDeadZoneInAnIdealValve) {
 }
 
 TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
-  simulation::SimulatedEvent blind;
-  blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
-  blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
-  simulated().events.push_back(blind);
-  make();
-  KnowingOperator person([this] { return truth_mm(); });
-  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
+  sensor_fault(simulation::SensorFault::Kind::out_of_range);
+  const auto line = calibrate_with_the_truth();
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().code, ExitCode::not_acceptable);
   EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
@@ -261,11 +268,8 @@ TEST_F(CalibrateTest, DoesNotRaiseThePressureWithoutTheRequiredSensor) {
     // monitor.
     for (std::size_t i = 0; i < (monitor ? 2 : all.size()); ++i) {
       SCOPED_TRACE(std::to_string(i) + (monitor ? " without the monitor" : " without the sensor"));
-      simulation::SimulatedEvent blind;
-      blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
-      blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
       simulated().events.clear();
-      if (!monitor) simulated().events.push_back(blind);
+      if (!monitor) sensor_fault(simulation::SensorFault::Kind::out_of_range);
       time_.clock.set(1'000'000'000);
       simulation::SimulatedBoard plants(simulated(), time_.clock);
       WatchedBoard board(plants);
@@ -282,13 +286,8 @@ TEST_F(CalibrateTest, DoesNotRaiseThePressureWithoutTheRequiredSensor) {
 }
 
 TEST_F(CalibrateTest, RefusesAStuckDisplacementSensor) {
-  simulation::SimulatedEvent stuck;
-  stuck.kind = simulation::SimulatedEvent::Kind::sensor_fault;
-  stuck.sensor.kind = simulation::SensorFault::Kind::stuck;
-  simulated().events.push_back(stuck);
-  make();
-  KnowingOperator person([this] { return truth_mm(); });
-  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
+  sensor_fault(simulation::SensorFault::Kind::stuck);
+  const auto line = calibrate_with_the_truth();
   ASSERT_FALSE(line);
   EXPECT_NE(line.error().text.find("changes too little"), std::string::npos) << line.error().text;
 }
@@ -305,9 +304,7 @@ TEST_F(CalibrateTest, RefusesANonNumericAnswerAndVents) {
 
 TEST_F(CalibrateTest, VentsIfStoppedByTheUser) {
   time_.stop_at = 4'000'000'000;
-  make();
-  KnowingOperator person([this] { return truth_mm(); });
-  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
+  const auto line = calibrate_with_the_truth();
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().text, "stopped by the user");
   EXPECT_GT(board_->plant(0).held_command_kpa(), 1) << "the command had begun to rise before the stop";
@@ -363,10 +360,7 @@ TEST_F(CalibrateTest, ReadsGaugePositionsFromTheOperatorWithoutMotion) {
 }
 
 TEST_F(CalibrateTest, SkipsAGaugePositionWithoutAValidReading) {
-  simulation::SimulatedEvent blind;
-  blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
-  blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
-  simulated().events.push_back(blind);
+  sensor_fault(simulation::SensorFault::Kind::out_of_range);
   make();
   KnowingOperator person([] { return ""; });
   const auto visits = read_positions(*session_, person, settings_, {0, 10});
@@ -398,7 +392,7 @@ TEST_F(CalibrateTest, TheSnippetIsAcceptedInARigFile) {
   EXPECT_NE(text.find("use 60 % of the valve's range\n"), std::string::npos) << text;
 
   // Insert the results of the calibration into the rig file.
-  std::string file = daemon::testing::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
+  std::string file = test::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
   for (const std::string key : {"sensor", "valve"}) {
     const auto line_at = [&](const std::string& in, std::size_t from) { return in.find(key + ": {", from); };
     const std::size_t old_at = line_at(file, file.find("channels:"));

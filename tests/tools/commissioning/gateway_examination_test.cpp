@@ -1,7 +1,6 @@
 #include "tools/commissioning/examinations.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -17,13 +16,6 @@ namespace fs = std::filesystem;
 
 class Gateways : public ::testing::Test {
  protected:
-  Gateways() { fs::create_directories(folder_); }
-  ~Gateways() override { fs::remove_all(folder_); }
-  Gateways(const Gateways&) = delete;
-  Gateways& operator=(const Gateways&) = delete;
-  Gateways(Gateways&&) = delete;
-  Gateways& operator=(Gateways&&) = delete;
-
   void enable(const std::string& program) {
     fs::create_symlink("/nowhere", folder_ / (program + ".service"));
   }
@@ -42,7 +34,8 @@ class Gateways : public ::testing::Test {
     return findings.list();
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("gateways_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
 };
 
 TEST_F(Gateways, ADisabledServiceHasNoFinding) {

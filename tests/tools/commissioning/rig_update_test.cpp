@@ -4,26 +4,19 @@
 #include "tools/commissioning/calibration_results.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "base/files.h"
 #include "rig/rig_file.h"
+#include "tests/support/files.h"
 
 namespace softgrip::tools::calibrate::rig_update_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of_file(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 Line line(const drivers::TwoPoints& points) {
   Line found;
@@ -36,8 +29,7 @@ Line line(const drivers::TwoPoints& points) {
 class RigUpdateTest : public ::testing::Test {
  protected:
   RigUpdateTest() {
-    fs::create_directories(folder_);
-    std::string text = text_of_file(config_ / "rig.yaml");
+    std::string text = test::text_of(config_ / "rig.yaml");
     const std::string models = (config_ / "models/").string();
     for (std::size_t at = text.find("models/"); at != std::string::npos;
          at = text.find("models/", at + models.size())) {
@@ -45,7 +37,6 @@ class RigUpdateTest : public ::testing::Test {
     }
     save(text);
   }
-  ~RigUpdateTest() override { fs::remove_all(folder_); }
   void save(const std::string& text) {
     std::ofstream(path_) << text;
     document::Problems problems;
@@ -66,7 +57,8 @@ class RigUpdateTest : public ::testing::Test {
     return results;
   }
   fs::path config_ = fs::path(SOFTGRIP_SOURCE_DIR) / "config";
-  fs::path folder_ = fs::temp_directory_path() / ("softgrip_rig_update_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   fs::path path_ = folder_ / "rig.yaml";
   std::string text_;
   rig::RigFile rig_;
@@ -123,8 +115,8 @@ TEST_F(RigUpdateTest, PointsThatTheRigRefusesAreNotWritten) {
 TEST_F(RigUpdateTest, WritesTheNewFileAndKeepsABackupOfTheOldOne) {
   const auto backup = write_rig(rig_, replaced("name: simulated", "name: other"));
   ASSERT_TRUE(backup) << backup.error();
-  EXPECT_EQ(text_of_file(*backup), text_);
-  EXPECT_EQ(text_of_file(path_), replaced("name: simulated", "name: other"));
+  EXPECT_EQ(test::text_of(*backup), text_);
+  EXPECT_EQ(test::text_of(path_), replaced("name: simulated", "name: other"));
   EXPECT_NE(fs::path(*backup).extension(), ".yaml")
       << "softgrip check FOLDER must not read the backup file as a rig file";
 }
@@ -134,7 +126,7 @@ TEST_F(RigUpdateTest, DoesNotOverwriteAFileThatWasChangedMeanwhile) {
   const auto backup = write_rig(rig_, "name: x\n");
   ASSERT_FALSE(backup);
   EXPECT_NE(backup.error().find("was changed while"), std::string::npos);
-  EXPECT_EQ(text_of_file(path_), text_ + "# by hand\n");
+  EXPECT_EQ(test::text_of(path_), text_ + "# by hand\n");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 

@@ -1,7 +1,6 @@
 #include "tools/figures/figure_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -11,8 +10,8 @@ namespace softgrip::tools::figure_files_test {
 namespace {
 
 TEST(FigureFiles, WritesEachFigureAsSvgPdfAndCsv) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("softgrip_figures_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path();
   sysid::Chart chart;
   chart.x.label = "time [s]";
   chart.y.label = "error [mm]";
@@ -30,7 +29,6 @@ TEST(FigureFiles, WritesEachFigureAsSvgPdfAndCsv) {
             "time [s],model: error [mm]\n0,0.5\n1,0.25\n");
   EXPECT_EQ(*read_file((folder / "figure-2-forest.csv").string(), 10000),
             "cause,gain\n\"Valve lag, first order\",61\n");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(FigureFiles, SucceedsWithoutAFolder) {
@@ -38,8 +36,8 @@ TEST(FigureFiles, SucceedsWithoutAFolder) {
 }
 
 TEST(FigureFiles, AReportConsistsOfFilesPageAndFigures) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("softgrip_report_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path();
   sysid::Page page("Title", "Verdict", sysid::Tone::good);
   page.figure({"forest", "", {}, sysid::Drawing{.markup = "", .header = {"cause"}, .rows = {{"leak"}}}});
   ASSERT_TRUE(write_report((folder / "out").string(), {{"result.json", "{}\n"}}, page,
@@ -47,7 +45,6 @@ TEST(FigureFiles, AReportConsistsOfFilesPageAndFigures) {
   EXPECT_EQ(*read_file((folder / "out/result.json").string(), 10000), "{}\n");
   EXPECT_EQ(*read_file((folder / "out/report.html").string(), 100000), page.to_html());
   EXPECT_TRUE(std::filesystem::is_regular_file(folder / "figures/figure-1-forest.csv"));
-  std::filesystem::remove_all(folder);
   ASSERT_TRUE(write_report("", {{"result.json", "{}\n"}}, page, ""));
   EXPECT_FALSE(std::filesystem::exists("result.json"));
 }

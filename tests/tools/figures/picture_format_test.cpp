@@ -1,15 +1,10 @@
+#include "tests/support/text.h"
 #include "tools/figures/figure_files.h"
 
 #include <gtest/gtest.h>
 
 namespace softgrip::tools::picture_format_test {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
 
 sysid::Figure a_figure() {
   sysid::Chart chart;
@@ -38,7 +33,7 @@ TEST(PictureFormat, APdfIsOnePageOfTheFiguresSize) {
   const auto pdf = bytes_of(a_figure(), PictureFormat::pdf);
   ASSERT_TRUE(pdf) << pdf.error();
   EXPECT_EQ(pdf->substr(0, 5), "%PDF-");
-  EXPECT_EQ(count(*pdf, "/Type /Page") - count(*pdf, "/Type /Pages"), 1U);
+  EXPECT_EQ(test::count_of(*pdf, "/Type /Page") - test::count_of(*pdf, "/Type /Pages"), 1U);
   EXPECT_NE(pdf->find("/MediaBox [ 0 0 570 210 ]"), std::string::npos) << "760 x 280 pixels";
 }
 

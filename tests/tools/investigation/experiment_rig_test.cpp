@@ -2,6 +2,7 @@
 // experiment can end.
 
 #include "tools/investigation/experiment_rig.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,6 @@
 
 #include "document/problem.h"
 #include "sysid/diagnosis/experiments/experiment.h"
-#include "tests/daemon/temporary_folder.h"
 #include "tools/baseline/commissioning_run.h"
 
 namespace softgrip::tools::experiment_rig_test {
@@ -45,7 +45,7 @@ daemon::Outcome outcome_of(Ending ending, std::optional<SequenceEnd> end, bool s
 }
 
 NotPlayed refused(const daemon::Outcome& outcome) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   const ExperimentRig rig = rig_that_ends(outcome);
   const sysid::Waveform waveform = sysid::experiment_menu(rig.limits(0, 0)).front();
   const auto played = run_on(rig, "one", sysid::sequence_yaml(waveform, rig.channel_name()), folder.path());

@@ -2,6 +2,7 @@
 // does not suffice to distinguish the possible causes.
 
 #include "tools/investigation/investigation.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -60,9 +61,6 @@ sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64
 class InvestigationTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("softgrip_investigation_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     options_.given = loaded("bench_twin");
     options_.logs = {played(first_load, false, 1)};
     options_.experiment.limits = sysid::RigLimits{58, 300};
@@ -74,9 +72,9 @@ class InvestigationTest : public ::testing::Test {
       return played(experiment.best->waveform, true, 2);
     };
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
-  fs::path folder_;
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   InvestigationOptions options_;
   int plays_ = 0;
 };
@@ -129,9 +127,8 @@ ExperimentRig simulated_rig() {
 }
 
 TEST(ExperimentRig, RunsOnASimulatedBoardWithoutConsentAndReturnsTheLog) {
-  const fs::path folder = fs::temp_directory_path() / ("softgrip_rig_player_" + std::to_string(::getpid()));
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path();
   const Player play = rig_player(simulated_rig(), [](const std::string&) {
     ADD_FAILURE() << "an experiment on a simulated rig must not require consent";
     return false;
@@ -140,12 +137,11 @@ TEST(ExperimentRig, RunsOnASimulatedBoardWithoutConsentAndReturnsTheLog) {
   ASSERT_TRUE(log) << log.error().why;
   EXPECT_NEAR(*std::max_element(log->pressure_command_kpa.begin(), log->pressure_command_kpa.end()), 30, 0.5);
   EXPECT_GT(sysid::span_mm(*log), 3);
-  fs::remove_all(folder);
 }
 
 TEST(ExperimentRig, AFaultThatEndsTheExperimentIsNamed) {
-  const fs::path folder = fs::temp_directory_path() / ("softgrip_rig_fault_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path();
   ExperimentRig rig = simulated_rig();
   rig.rig.settings.channels[rig.channel].limits.displacement_max_mm = 3;
   rig.rig.settings.channels[rig.channel].limits.displacement_margin_mm = 1;
@@ -153,7 +149,6 @@ TEST(ExperimentRig, AFaultThatEndsTheExperimentIsNamed) {
   ASSERT_FALSE(log);
   EXPECT_FALSE(log.error().stopped);
   EXPECT_NE(log.error().why.find("F206 displacement_beyond_limits"), std::string::npos) << log.error().why;
-  fs::remove_all(folder);
 }
 
 TEST(ExperimentRig, LimitsThePressureByChannelLogsAndDisplacementRange) {
@@ -172,8 +167,8 @@ TEST(ExperimentRig, LimitsThePressureByChannelLogsAndDisplacementRange) {
 }
 
 TEST(CommandPlayer, RunsTheCommandAndReadsTheLog) {
-  const fs::path folder = fs::temp_directory_path() / ("softgrip command's " + std::to_string(::getpid()));
-  fs::remove_all(folder);
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path() + "/command's folder";
   fs::create_directories(folder);
   const auto allow = [](const std::string&) { return true; };
   const std::string awk =
@@ -192,7 +187,6 @@ TEST(CommandPlayer, RunsTheCommandAndReadsTheLog) {
   EXPECT_TRUE(called);
   ASSERT_FALSE(refused);
   EXPECT_TRUE(refused.error().stopped);
-  fs::remove_all(folder);
 }
 
 /// Tests a finger whose stiffness increases with the displacement. No command can distinguish this finger
@@ -314,8 +308,8 @@ TEST(SimulatedGauge, ReadsTheNonlinearSensorWithoutTheFinger) {
   channel.plant.model = model::with_block(
       model::with_block(channel.plant.model, {sysid::find_cause("stiffening")->forms.front().type, {0.02}}),
       {sysid::find_cause("sensor_nonlinearity")->forms.front().type, {1.5, 0, 20}});
-  const fs::path folder = fs::temp_directory_path() / ("softgrip_gauge_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path();
   const auto gauge = simulated_gauge(rig)({0, 10, 20, 10, 100}, folder.string());
   ASSERT_TRUE(gauge) << gauge.error().why;
   ASSERT_EQ(gauge->readings.size(), 4U)
@@ -326,12 +320,11 @@ TEST(SimulatedGauge, ReadsTheNonlinearSensorWithoutTheFinger) {
     EXPECT_EQ(gauge->readings[i].samples, 200);
   }
   EXPECT_NE(gauge->readings[1].reading_mm, gauge->readings[3].reading_mm) << "the readings contain noise";
-  fs::remove_all(folder);
 }
 
 TEST(CommandGauge, RunsTheCommandWithPositionsAndReadsTheGaugeFile) {
-  const fs::path folder = fs::temp_directory_path() / ("softgrip gauge's " + std::to_string(::getpid()));
-  fs::remove_all(folder);
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path() + "/gauge's folder";
   fs::create_directories(folder);
   const auto allow = [](const std::string&) { return true; };
   const std::string awk = R"(f() { awk -F, 'NR==1{print} NR>1{print $1 "," 1.1*$1}' "$1" > "$2"; }; f)";
@@ -347,7 +340,6 @@ TEST(CommandGauge, RunsTheCommandWithPositionsAndReadsTheGaugeFile) {
       command_gauge("touch called;", [](const std::string&) { return false; })({0, 1, 2}, folder.string());
   ASSERT_FALSE(refused);
   EXPECT_TRUE(refused.error().stopped);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "tools/log_input/log_input.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
-
-#include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::tools::log_input_test {
 namespace {
@@ -15,7 +14,7 @@ constexpr std::size_t samples = 400;
 /// Writes a log and returns its path. The log begins immediately after the command has jumped from 5 to 60
 /// kPa. After 4 s, the command jumps to 30 kPa. The pressure follows with a lag of 0.3 s. If `measured` is
 /// false, the log has no column of the measured pressure.
-std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool measured = true) {
+std::string begun_at_a_step(const ScratchFolder& folder, bool measured = true) {
   const std::string path = folder.path() + "/step.csv";
   std::ofstream out(path);
   out << "time_s,pressure_command_kpa,displacement_mm" << (measured ? ",pressure_kpa\n" : "\n");
@@ -32,7 +31,7 @@ std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool
 }
 
 TEST(LogInput, InsertsAnInitialSampleIfTheLogStartsAtACommandStep) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   const auto logs = read_logs({begun_at_a_step(folder)}, {});
   ASSERT_TRUE(logs);
   ASSERT_EQ(logs->front().size(), samples + 1);
@@ -41,7 +40,7 @@ TEST(LogInput, InsertsAnInitialSampleIfTheLogStartsAtACommandStep) {
 }
 
 TEST(LogInput, StartsAtTheLowestCommandWithoutAMeasuredPressure) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   LogInput staged;
   staged.begins_at_measured_pressure = true;
   const auto logs = read_logs({begun_at_a_step(folder, false)}, staged);
@@ -52,7 +51,7 @@ TEST(LogInput, StartsAtTheLowestCommandWithoutAMeasuredPressure) {
 }
 
 TEST(LogInput, InsertsNoSampleIfTheMeasuredPressureIsTheInput) {
-  const daemon::testing::TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string path = begun_at_a_step(folder);
   LogInput staged;
   staged.begins_at_measured_pressure = true;

@@ -1,7 +1,6 @@
 #include "tools/recordings/recording_picture.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -22,13 +21,6 @@ const std::string csv =
 
 class RecordingPicture : public ::testing::Test {
  protected:
-  RecordingPicture() { std::filesystem::create_directories(folder); }
-  ~RecordingPicture() override { std::filesystem::remove_all(folder); }
-  RecordingPicture(const RecordingPicture&) = delete;
-  RecordingPicture& operator=(const RecordingPicture&) = delete;
-  RecordingPicture(RecordingPicture&&) = delete;
-  RecordingPicture& operator=(RecordingPicture&&) = delete;
-
   void write(const std::string& name, const std::string& text) const {
     ASSERT_TRUE(write_file(folder / name, text));
   }
@@ -37,8 +29,8 @@ class RecordingPicture : public ::testing::Test {
     return sysid::read_recording(folder, problems);
   }
 
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("softgrip_picture_" + std::to_string(::getpid()));
+  const ScratchFolder scratch;
+  std::filesystem::path folder = scratch.path();
 };
 
 TEST_F(RecordingPicture, SplitsChannelsAndShowsEvents) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,8 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "base/files.h"
 
 namespace softgrip::web::archive_test {
 namespace {
@@ -22,11 +23,6 @@ class ArchiveTest : public ::testing::Test {
     fs::create_directories(folder_ / "one");
     std::ofstream(folder_ / "one" / "run.csv") << contents_;
   }
-  ~ArchiveTest() override { fs::remove_all(folder_); }
-  ArchiveTest(const ArchiveTest&) = delete;
-  ArchiveTest& operator=(const ArchiveTest&) = delete;
-  ArchiveTest(ArchiveTest&&) = delete;
-  ArchiveTest& operator=(ArchiveTest&&) = delete;
 
   std::shared_ptr<const DiskTask> done(DiskRequest disk_request) {
     auto task = archive_.submit(std::move(disk_request));
@@ -43,7 +39,8 @@ class ArchiveTest : public ::testing::Test {
 
   std::string contents_ =
       std::string(Archive::chunk_size, 'a') + std::string(Archive::chunk_size, 'b') + "end";
-  fs::path folder_ = fs::temp_directory_path() / ("archive_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   Archive archive_{folder_};
 };
 

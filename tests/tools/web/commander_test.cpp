@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files.h"
 #include "base/net/listener.h"
 
 namespace softgrip::web::commander_test {
@@ -52,7 +53,8 @@ TEST(Commander, RefusesACommandWithoutADaemonOrASocket) {
 }
 
 TEST(Commander, PendingStartsDoNotBlockAStopOrAVent) {
-  const std::string path = "/tmp/commander_" + std::to_string(::getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/daemon.sock";
   const auto daemon = net::listen_unix(path);
   ASSERT_TRUE(daemon) << daemon.error();
   Commander commander(path);
@@ -70,11 +72,11 @@ TEST(Commander, PendingStartsDoNotBlockAStopOrAVent) {
     ASSERT_TRUE(sent) << i;
     commander.abandon(*sent);
   }
-  ::unlink(path.c_str());
 }
 
 TEST(Commander, ReportsADaemonThatDoesNotReply) {
-  const std::string path = "/tmp/commander_hangs_" + std::to_string(::getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/daemon.sock";
   const auto daemon = net::listen_unix(path);
   ASSERT_TRUE(daemon) << daemon.error();
   Commander commander(path);
@@ -88,18 +90,12 @@ TEST(Commander, ReportsADaemonThatDoesNotReply) {
     if (sent && !response) commander.abandon(*sent);
   }
   EXPECT_TRUE(ended);
-  ::unlink(path.c_str());
 }
 
 /// Tests with a simulated daemon: the test reads and writes the lines of the daemon.
 class CommanderTest : public ::testing::Test {
  protected:
   CommanderTest() : listener_(std::move(*net::listen_unix(path_))) {}
-  ~CommanderTest() override { ::unlink(path_.c_str()); }
-  CommanderTest(const CommanderTest&) = delete;
-  CommanderTest& operator=(const CommanderTest&) = delete;
-  CommanderTest(CommanderTest&&) = delete;
-  CommanderTest& operator=(CommanderTest&&) = delete;
 
   std::uint64_t start() {
     const auto sent = commander_.send({{"command", "start"}, {"sequence", "pick"}}, now_);
@@ -152,7 +148,8 @@ class CommanderTest : public ::testing::Test {
   const Json accepted_ = Json::parse(R"({"ok":true,"result":{"request":1}})");
   const Json no_such_start_ = Json::parse(
       R"({"ok":false,"error":{"code":"refused","message":"","refusal":{"code":"R12","name":"named_start_not_running"}}})");
-  std::string path_ = "/tmp/commander_test_" + std::to_string(::getpid());
+  const ScratchFolder folder_;
+  std::string path_ = folder_.path() + "/daemon.sock";
   Descriptor listener_;
   Descriptor client_;
   Commander commander_{path_};

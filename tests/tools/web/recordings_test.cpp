@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
+#include "base/files.h"
 
 namespace softgrip::web::recordings_test {
 namespace {
@@ -20,13 +20,6 @@ namespace fs = std::filesystem;
 
 class RecordingsTest : public ::testing::Test {
  protected:
-  RecordingsTest() { fs::create_directories(folder_); }
-  ~RecordingsTest() override { fs::remove_all(folder_); }
-  RecordingsTest(const RecordingsTest&) = delete;
-  RecordingsTest& operator=(const RecordingsTest&) = delete;
-  RecordingsTest(RecordingsTest&&) = delete;
-  RecordingsTest& operator=(RecordingsTest&&) = delete;
-
   void add(const std::string& recording, const std::string& file) const {
     fs::create_directories(folder_ / recording);
     std::ofstream(folder_ / recording / file) << file;
@@ -35,7 +28,8 @@ class RecordingsTest : public ::testing::Test {
   /// is so old that a further change would give the folder a different time stamp.
   std::string list() { return recordings_.list(wall_time_now() + 60 * ns_per_s).dump(); }
 
-  fs::path folder_ = fs::temp_directory_path() / ("recordings_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   Recordings recordings_{folder_};
 };
 

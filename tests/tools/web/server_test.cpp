@@ -1,6 +1,7 @@
 // Tests the web server with clients on real sockets. No softgripd runs; some tests simulate it.
 
 #include "tools/web/server.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -51,7 +52,6 @@ class ServerTest : public ::testing::Test {
   ~ServerTest() override {
     ::eventfd_write(end_.get(), 1);
     thread_.join();
-    fs::remove_all(folder_);
   }
   ServerTest(const ServerTest&) = delete;
   ServerTest& operator=(const ServerTest&) = delete;
@@ -98,7 +98,8 @@ class ServerTest : public ::testing::Test {
   }
 
   static constexpr const char* refused = "HTTP/1.1 503 Refused";
-  fs::path folder_ = fs::temp_directory_path() / ("server_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   std::string large_ = std::string(3'000'000, 'r') + "end";
   Settings settings_;
   std::uint16_t port_ = 0;

@@ -1,10 +1,10 @@
 // Tests the class Site. For each request, checks the response that Site returns.
 
 #include "tools/web/site.h"
+#include "base/files.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -28,11 +28,6 @@ class SiteTest : public ::testing::Test {
     std::ofstream(folder_ / "outside.svg") << "secret";
     fs::create_symlink(folder_ / "outside.svg", folder_ / "run-1" / "link.svg");
   }
-  ~SiteTest() override { fs::remove_all(folder_); }
-  SiteTest(const SiteTest&) = delete;
-  SiteTest& operator=(const SiteTest&) = delete;
-  SiteTest(SiteTest&&) = delete;
-  SiteTest& operator=(SiteTest&&) = delete;
 
   Outcome get(const std::string& path, const std::string& token = {}) { return ask("GET", path, token); }
   Outcome ask(const std::string& method, const std::string& path, const std::string& token,
@@ -77,7 +72,8 @@ class SiteTest : public ::testing::Test {
     return settings;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("site_" + std::to_string(::getpid()));
+  const ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
   Settings settings_ = settings_of(folder_);
   Gate gate_{settings_, *Tokens::parse("look " + look + "\noperate " + operate)};
   LiveState state_;

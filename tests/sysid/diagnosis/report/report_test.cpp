@@ -10,6 +10,7 @@
 #include "sysid/diagnosis/report/report_sections.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/pages/canvas.h"
+#include "tests/support/text.h"
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
 
@@ -64,12 +65,6 @@ Diagnosis a_diagnosis(const model::Model& given) {
   d.runs = {{"log_1", 0.5, 0.31, 0.2}, {"log_2", 0.5, 0.29, 0.2}};
   d.noise_mm = 0.1;
   return d;
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
 }
 
 /// Returns the left-aligned texts of the drawing that a line crosses. Other texts are not tested.
@@ -166,11 +161,11 @@ TEST_F(ReportTest, InsignificantPartialCauseIsNotInTheForestPlot) {
 
 TEST_F(ReportTest, BlockDiagramMarksAddedBlocks) {
   const Figure chain = chain_figure(diagnosis.extended_model, given);
-  EXPECT_EQ(count(chain.drawing->markup, ", added<"), 2U) << "added blocks: delay and lag";
+  EXPECT_EQ(test::count_of(chain.drawing->markup, ", added<"), 2U) << "added blocks: delay and lag";
   EXPECT_NE(chain.drawing->markup.find("time constant = 0.044 s"), std::string::npos);
   EXPECT_NE(chain.drawing->markup.find("alpha = 0.211 mm/kPa"), std::string::npos);
   EXPECT_NE(chain.drawing->markup.find("gamma = 0.0163 1/kPa"), std::string::npos);
-  EXPECT_EQ(count(chain_figure(given, given).drawing->markup, ", added<"), 0U);
+  EXPECT_EQ(test::count_of(chain_figure(given, given).drawing->markup, ", added<"), 0U);
 }
 
 TEST_F(ReportTest, OpensWithTheVerdictAndEndsWithTheAppendix) {
@@ -194,7 +189,7 @@ TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
   for (std::size_t i = 0; i < report.figures().size(); ++i) {
     const Figure& figure = report.figures()[i];
     EXPECT_GT(figure.caption.size(), 20U) << figure.name;
-    EXPECT_GT(count(csv_of(figure), "\n"), 1U) << figure.name;
+    EXPECT_GT(test::count_of(csv_of(figure), "\n"), 1U) << figure.name;
     EXPECT_NE(html.find("<b>Figure " + std::to_string(i + 1) + ".</b>"), std::string::npos) << figure.name;
   }
 }

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "base/files.h"
+
 namespace softgrip::web::tokens_test {
 namespace {
 
@@ -43,7 +45,8 @@ TEST(Tokens, RefusesAMalformedListWithoutPrintingTheTokens) {
 }
 
 TEST(Tokens, RefusesAWorldReadableFile) {
-  const auto path = std::filesystem::temp_directory_path() / ("tokens_" + std::to_string(::getpid()));
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/tokens";
   std::ofstream(path) << "look " << look << "\n";
   ASSERT_EQ(::chmod(path.c_str(), 0640), 0);
   EXPECT_TRUE(Tokens::load(path));
