@@ -96,17 +96,21 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
         "the finger are evaluated together");
 }
 
-/// Warns if the command of a later log differs from the commands of all healthy logs.
-void warn_of_another_command(const std::vector<Log>& healthy, const std::vector<Log>& later,
-                             std::vector<std::string>& warnings) {
+/// Returns the name of the first later log whose command differs from the commands of all healthy logs.
+/// Returns an empty text if there is no such log.
+std::string log_with_another_command(const std::vector<Log>& healthy, const std::vector<Log>& later) {
   for (const Log& log : later) {
     if (std::none_of(healthy.begin(), healthy.end(),
                      [&](const Log& other) { return have_same_command(log, other, limits::rest_share); }))
-      return warnings.push_back(
-          "No healthy log has the same command as " + log.name +
-          ". The model error for another command may look like a change. To exclude this, record a later log "
-          "with the command of a healthy log");
+      return log.name;
   }
+  return {};
+}
+
+std::string another_command(const std::string& log) {
+  return "No healthy log has the same command as " + log +
+         ". The model error for another command may look like a change. To exclude this, record a later log "
+         "with the command of a healthy log";
 }
 
 std::string unused_pressure(const DriveChoice& choice) {
@@ -222,7 +226,9 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   }
   diagnosis.verdict = verdict_of(diagnosis);
   if (diagnosis.verdict != ChangeVerdict::unchanged)
-    warn_of_another_command(healthy, later, diagnosis.warnings);
+    diagnosis.another_command = log_with_another_command(healthy, later);
+  if (!diagnosis.another_command.empty())
+    diagnosis.warnings.push_back(another_command(diagnosis.another_command));
   diagnosis.output_unit = healthy.front().output_unit;
   for (ChangeCause& cause : diagnosis.causes) cause.output_unit = diagnosis.output_unit;
   for (JudgedChange& judged : diagnosis.readings) judged.output_unit = diagnosis.output_unit;

@@ -126,6 +126,9 @@ struct ChangeDiagnosis {
   std::vector<ChangeCause> causes;
   model::OutputUnit output_unit = model::OutputUnit::mm;
   std::vector<JudgedChange> readings;
+  /// Name of the first later log whose command no healthy log has; empty: there is none, or the verdict is
+  /// ChangeVerdict::unchanged.
+  std::string another_command;
   std::vector<std::string> warnings;
   double wall_s = 0;
 };

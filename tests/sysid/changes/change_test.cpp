@@ -432,6 +432,20 @@ TEST(ChangeResult, WithOneHealthyLogTheSentenceStatesWhichErrorWouldBeReported) 
   EXPECT_EQ(change_sentence(d).find("one healthy log"), std::string::npos);
 }
 
+TEST(ChangeResult, UnexplainedErrorForAnotherCommandMayBeAModelError) {
+  ChangeDiagnosis d;
+  d.verdict = ChangeVerdict::unexplained;
+  EXPECT_EQ(
+      change_sentence(d),
+      "The finger has changed since the healthy logs, but no cause of the library explains the change.");
+  d.another_command = "today";
+  EXPECT_EQ(
+      change_sentence(d),
+      "The later logs differ from the prediction of the baseline model, and no cause of the library "
+      "explains the difference. The reason is a change of the finger or an error of the model, because no "
+      "healthy log has the command of today.");
+}
+
 TEST(ChangeResult, ParametersHaveTheDeprecatedNameBesideTheName) {
   ChangeDiagnosis d;
   d.readings.emplace_back();
