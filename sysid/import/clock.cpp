@@ -81,7 +81,7 @@ bool rises(const std::vector<double>& values) {
 /// Returns the unit of a time column; empty if the unit is unknown.
 std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::size_t index) {
   const TableColumn& column = table.columns[index];
-  const std::string own = column.unit.empty() ? split_unit(column.name, Quantity::time).unit : column.unit;
+  const std::string own = stated_unit(column, Quantity::time);
   const ColumnMapping& time = mapping[Role::time];
   const bool mapped = std::any_of(time.columns.begin(), time.columns.end(), [&](const std::string& word) {
     return column_index(table, word) == index;

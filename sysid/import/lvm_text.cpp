@@ -56,8 +56,7 @@ class LvmReader {
     }
     if (!good_) return std::nullopt;
     if (short_line_ != 0 && !options_.skip_bad_lines)
-      table_.warnings.push_back("line " + std::to_string(short_line_) +
-                                ": the last line is cut off and left out");
+      table_.warnings.push_back(left_out_sentence(short_line_));
     if (table_.columns.empty() || table_.rows() == 0) return refuse(1, "the LabVIEW measurement has no rows");
     table_.format = "LabVIEW measurement, " + std::to_string(sections) +
                     (sections == 1 ? " section" : " sections") + (separator_ == '\t' ? "" : ", commas");

@@ -72,7 +72,7 @@ std::string common_time(const McapMessages& messages) {
 /// Returns a problem if the topics have different clocks. For each topic, compares the times that its
 /// messages state with the times at which the messages were recorded.
 std::optional<MergeProblem> check_clocks(const McapMessages& messages, const TableColumn& time) {
-  const std::string name = time.unit.empty() ? split_unit(time.name, Quantity::time).unit : time.unit;
+  const std::string name = stated_unit(time, Quantity::time);
   const auto unit = unit_named(name.empty() ? epoch_unit(time) : name, Quantity::time);
   if (!unit) return std::nullopt;
   std::vector<double> offsets_s;

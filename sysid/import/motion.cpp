@@ -5,13 +5,15 @@
 #include <numeric>
 #include <string>
 
+#include "sysid/import/role_fit.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest span of a motion, relative to the largest span of a column in the same unit.
+/// Smallest span of a motion, relative to the largest span of a column in the same unit. A sensor axis at an
+/// angle of 84 degrees to the motion measures 10 % of it.
 constexpr double smallest_share = 0.1;
 
 /// Returns the finite values of a column that are not codes for missing values.
@@ -43,9 +45,8 @@ double span_of_motion(const std::vector<double>& readings) {
   return *high - *low;
 }
 
-/// Returns the unit of a displacement that a column states.
-std::string stated_unit(const TableColumn& column) {
-  return lower_case(column.unit.empty() ? split_unit(column.name, Quantity::displacement).unit : column.unit);
+std::string unit_of(const TableColumn& column) {
+  return lower_case(stated_unit(column, Quantity::displacement));
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ std::vector<std::size_t> moving_columns(const ForeignTable& table, std::span<con
   for (std::size_t k = 0; k < columns.size(); ++k) {
     double largest = 0;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const bool same = stated_unit(table.columns[columns[i]]) == stated_unit(table.columns[columns[k]]);
+      const bool same = unit_of(table.columns[columns[i]]) == unit_of(table.columns[columns[k]]);
       if (same) largest = std::max(largest, spans[i]);
     }
     if (spans[k] > 0 && spans[k] >= smallest_share * largest) moving.push_back(columns[k]);

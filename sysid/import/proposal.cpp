@@ -252,7 +252,7 @@ std::string derived_column(const ForeignTable& table, std::initializer_list<Role
   for (const TableColumn& column : table.columns) {
     const bool may_be = std::any_of(of_roles.begin(), of_roles.end(), [&](Role role) {
       const Quantity quantity = spec_of(role).quantity;
-      const std::string unit = column.unit.empty() ? split_unit(column.name, quantity).unit : column.unit;
+      const std::string unit = stated_unit(column, quantity);
       return names_role(column.name, role) || unit_named(unit, quantity).has_value();
     });
     if (may_be && names_derived_value(column.name))

@@ -93,14 +93,9 @@ bool names_role(std::string_view name, Role role) {
   });
 }
 
-namespace {
-
-/// Returns the unit that a column states, whether it is a unit of time, pressure or another quantity.
-std::string open_unit(const TableColumn& column) {
-  return column.unit.empty() ? split_unit(column.name).unit : column.unit;
+std::string stated_unit(const TableColumn& column, std::optional<Quantity> quantity) {
+  return column.unit.empty() ? split_unit(column.name, quantity).unit : column.unit;
 }
-
-}  // namespace
 
 int fitness_for(const TableColumn& column, Role role) {
   const RoleSpec& spec = spec_of(role);
@@ -110,8 +105,8 @@ int fitness_for(const TableColumn& column, Role role) {
   if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
   if (names_derived_value(column.name)) return 0;
-  const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
-  const std::string anywhere = open_unit(column);
+  const std::string unit = stated_unit(column, spec.quantity);
+  const std::string anywhere = stated_unit(column);
   const bool of_quantity = !unit.empty() && unit_named(unit, spec.quantity).has_value();
   const std::optional<Unit> carried = unit_named(anywhere);
   const std::string bare = split_unit(column.name, spec.quantity).name;

@@ -2,13 +2,19 @@
 // States how well a column of an external file fits a role. The name and the unit of the column determine the
 // result.
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "sysid/import/mapping.h"
 #include "sysid/import/table.h"
+#include "sysid/import/units.h"
 
 namespace softgrip::sysid {
 
+/// Returns the unit that a column states: its unit, or the unit at the end of its name; "" if there is none.
+/// @param quantity  quantity to which a unit in the name must belong; not set: any quantity.
+[[nodiscard]] std::string stated_unit(const TableColumn& column, std::optional<Quantity> quantity = {});
 /// Returns a score that states how well a column fits a role, from the column's name and unit. 0: the column
 /// cannot have the role.
 [[nodiscard]] int fitness_for(const TableColumn& column, Role role);

@@ -14,10 +14,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A group has at most this share of the steps back or of the repeated times of all rows.
+/// A group has at most this share of the steps back or of the repeated times of all rows. The share would be
+/// near 1 if the column had no relation to the times. A recorder may repeat a few rows.
 constexpr double largest_disorder_share = 0.05;
 /// The readings of consecutive rows of a group differ by at most this share of the difference of consecutive
-/// rows of the table.
+/// rows of the table. The share would be near 1 if the column had no relation to the readings.
 constexpr double largest_step_share = 0.5;
 
 /// Counts of steps between consecutive samples.

@@ -96,8 +96,7 @@ class RowReader {
   void leave_out(const TextLine& line, bool is_last, bool closed) {
     if (is_last && (cells_.size() < dialect_.width || !closed)) {
       table_.account.leave_out(LeftOut::cut_off_line);
-      table_.warnings.push_back("line " + std::to_string(line.number) +
-                                ": the last line is cut off and left out");
+      table_.warnings.push_back(left_out_sentence(static_cast<std::size_t>(line.number)));
     } else if (options_.skip_bad_lines) {
       table_.account.leave_out(LeftOut::bad_line);
       skipped_.push_back(line.number);

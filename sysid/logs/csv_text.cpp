@@ -48,6 +48,10 @@ std::string cut_off_sentence(std::string_view last_cell) {
          "' is shorter than the last cells of all other rows. Check this value, or delete the row";
 }
 
+std::string left_out_sentence(std::size_t line) {
+  return "line " + std::to_string(line) + ": the last line is cut off and left out";
+}
+
 std::string_view unquoted(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);

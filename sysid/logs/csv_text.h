@@ -40,6 +40,9 @@ class CutOffDetector {
 /// Returns a sentence about the last row of a text for which CutOffDetector::may_be_cut_off() is true.
 [[nodiscard]] std::string cut_off_sentence(std::string_view last_cell);
 
+/// Returns a sentence about a last line that has too few cells.
+[[nodiscard]] std::string left_out_sentence(std::size_t line);
+
 /// Removes blanks at both ends of the text, and then one pair of double quotes.
 [[nodiscard]] std::string_view unquoted(std::string_view text);
 
