@@ -322,9 +322,8 @@ std::string change_sentence(const ChangeDiagnosis& diagnosis) {
   if (diagnosis.verdict == ChangeVerdict::unchanged) return unchanged_sentence(diagnosis.readings);
   if (diagnosis.verdict == ChangeVerdict::unexplained && !diagnosis.another_command.empty())
     return "The later logs differ from the prediction of the baseline model, and no cause of the library "
-           "explains the difference. The reason is a change of the finger or an error of the model, because "
-           "no "
-           "healthy log has the command of " +
+           "explains the difference. The reason is a change of the finger or an error of the model, "
+           "because no healthy log has the command of " +
            diagnosis.another_command + ".";
   if (diagnosis.verdict == ChangeVerdict::unexplained)
     return "The finger has changed since the healthy logs, but no cause of the library explains the change.";

@@ -149,10 +149,10 @@ Disagreement added_disagreement(const Base& base, const std::vector<Record>& lat
     most.loss = std::max(most.loss, now.loss - healthy.loss);
   }
   // The permitted error is run_to_run_factor() of the healthy runs times the result. The healthy runs do not
-  // show the error for the later input. The disagreement shows it as roughly as a single run.
-  const double roughness = run_to_run_factor(1) / run_to_run_factor(base.units.runs());
-  most.mean_square *= roughness;
-  most.loss *= roughness;
+  // show the error for the later input. The disagreement is as uncertain as the error of a single run.
+  const double uncertainty = run_to_run_factor(1) / run_to_run_factor(base.units.runs());
+  most.mean_square *= uncertainty;
+  most.loss *= uncertainty;
   return most;
 }
 

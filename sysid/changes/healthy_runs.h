@@ -85,8 +85,8 @@ class RunSpread {
 /// Returns the disagreement about the later records beyond the largest one that is expected about another
 /// healthy run (run_to_run_factor()). If there are several alternatives, the largest value is returned. The
 /// result is zero for an input like the healthy inputs. The permitted error then stays unchanged. The
-/// disagreement shows the error for an unfamiliar input only as roughly as a single run. Therefore the result
-/// is multiplied by the ratio of run_to_run_factor() for one run to its value for the healthy runs.
+/// disagreement is as uncertain as the error of a single run. Therefore the result is multiplied by the ratio
+/// of run_to_run_factor() for one run to its value for the healthy runs.
 /// @param later  later records at the full sampling rate.
 [[nodiscard]] Disagreement added_disagreement(const Base& base, const std::vector<Record>& later);
 

@@ -34,6 +34,7 @@ std::string_view reason_of(Veto veto) {
     case Veto::error_not_reduced:
       return "the effect does not reduce the error of the readings";
     case Veto::explains_too_little:
+      static_assert(limits::least_explained_share == 0.2);
       return "the effect explains less than 20 % of the remaining error";
     case Veto::not_predictive:
       return "the effect reduces the error on the fitted readings but increases the error on other readings";

@@ -241,8 +241,9 @@ class StartSearch {
   /// at rest: neither the noise nor the assumed model error explains the difference. Each fitted number of
   /// the initial state reduces the residual by chance, so the limit is a quantile of the chi-square
   /// distribution. If the model error makes the residuals so dependent that their number is below the number
-  /// of fitted numbers, half of the residuals count as free. The fit is the best of many pairs of reversals,
-  /// so the limit also increases with their number (Bonferroni; the density decreases with exp(-x/2)).
+  /// of fitted numbers, half of the residuals count as free. The fit is the best of many pairs of reversals.
+  /// The limit therefore increases by twice the logarithm of their number: the probability decreases with
+  /// exp(-x/2), and it is divided by the number of pairs (Bonferroni).
   [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
     const Eigen::VectorXd still = unexplained(resting.start);
     double sum = 0, squares = 0;

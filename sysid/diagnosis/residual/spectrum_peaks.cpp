@@ -22,7 +22,8 @@ using Complex = std::complex<double>;
 
 /// Number of frequency bins on each side of a peak with which the peak is compared.
 constexpr std::size_t around = 60;
-/// Number of bins per frequency resolution of the campaign. The transform is twice as long as the campaign.
+/// Number of bins per frequency resolution of the campaign. It is the ratio of the lengths of the transform
+/// and of the campaign. The frequency grid is therefore finer than this resolution.
 constexpr std::size_t resolution = 2;
 constexpr double highest_looked_at_hz = 25;
 
@@ -99,16 +100,6 @@ bool is_in_drive(const std::vector<double>& drive_power, std::size_t bin, double
   return false;
 }
 
-/// Returns true if the power in a bin is at most the power that leaks into it from one of these lines. In the
-/// spectrum of a record, the power beside a line is at most 1/(pi d)^2 of its power at the distance of d
-/// frequency resolutions. The gaps between records increase it, so a factor of 4 is permitted.
-bool is_leakage(const std::vector<double>& power, std::size_t bin, const std::vector<std::size_t>& lines) {
-  return std::any_of(lines.begin(), lines.end(), [&](std::size_t line) {
-    const double d = (static_cast<double>(bin) - static_cast<double>(line)) / resolution;
-    return power[bin] <= 4 * power[line] / square(std::numbers::pi * d);
-  });
-}
-
 /// Returns two numbers for each local maximum of the spectrum: the ratio of its power to the median power of
 /// its neighbourhood, and its bin. The list is sorted by the ratio, the largest first. A slow model error has
 /// no large ratio, because it increases the power of its neighbourhood too.
@@ -132,8 +123,6 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   }
   const double campaign_s = records.back().campaign_time_s + records.back().time_s.back() -
                             records.front().campaign_time_s - records.front().time_s.front();
-  // The transform is twice as long as the campaign. The frequency grid is therefore finer than the frequency
-  // resolution of the campaign.
   const Grid grid{records.front().campaign_time_s + records.front().time_s.front(), interval_s,
                   std::bit_ceil(resolution * static_cast<std::size_t>(campaign_s / interval_s) + 4)};
   const double step_hz = 1 / (interval_s * static_cast<double>(grid.size));
@@ -143,18 +132,16 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   const std::vector<Complex> transformed = spectrum_of(on_grid(grid, records, residual_mm), bins);
   const std::vector<double> drive_power =
       power_of(spectrum_of(on_grid(grid, records, drives_of(records)), bins));
-  const std::vector<double> power = power_of(transformed);
-  const auto peaks = peaks_of(power, static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
+  const auto peaks =
+      peaks_of(power_of(transformed), static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
   double readings = 0;
   for (const auto& r : residual_mm) {
     for (const double value : r) readings += std::isnan(value) ? 0 : 1;
   }
   std::vector<Line> lines;
-  std::vector<std::size_t> of_drive;
   for (const auto& [ratio, bin] : peaks) {
     if (lines.size() == count) break;
-    if (is_in_drive(drive_power, bin, ratio)) of_drive.push_back(bin);
-    if (is_leakage(power, bin, of_drive)) continue;
+    if (is_in_drive(drive_power, bin, ratio)) continue;
     const double frequency_hz = step_hz * static_cast<double>(bin);
     // The phase is corrected for different time origins. The transform begins at the first sample, and the
     // oscillation is defined from the start of the campaign.
