@@ -22,11 +22,15 @@ constexpr double far = 0.1;
 constexpr double on_its_way = 0.5;
 
 /// Returns the number of samples at the beginning of the log whose commands differ from the first command by
-/// less than 5 % of the range of the commands.
+/// less than 5 % of the range of the commands. A single sample with another command does not end this part of
+/// the log, because a finger hardly moves within one sampling interval.
 std::size_t stands_for(const Log& log, double range_kpa) {
   const std::vector<double>& command = log.pressure_command_kpa;
+  const auto stands = [&](std::size_t i) {
+    return i < log.size() && std::abs(command[i] - command.front()) < 0.5 * far * range_kpa;
+  };
   std::size_t count = 1;
-  while (count < log.size() && std::abs(command[count] - command.front()) < 0.5 * far * range_kpa) ++count;
+  while (stands(count) || stands(count + 1)) ++count;
   return count;
 }
 

@@ -113,6 +113,19 @@ TEST(CommandBefore, FirstCommandOfOneSampleGivesNoEarlierCommand) {
       << "the command was 60 kPa for only one sample, so the pressure did not reach 60 kPa";
 }
 
+TEST(CommandBefore, SingleSampleWithAnotherCommandDoesNotEndTheFirstCommand) {
+  for (const bool is_measured : {true, false}) {
+    Log log = begun_at_a_step(7);
+    if (!is_measured) log = unmeasured(log);
+    const auto before_kpa = pressure_before_kpa(log);
+    ASSERT_TRUE(before_kpa);
+    log.pressure_command_kpa[1] = 20;
+    EXPECT_EQ(pressure_before_kpa(log), before_kpa) << "a pressure was measured: " << is_measured;
+    log.pressure_command_kpa[2] = 20;
+    EXPECT_FALSE(pressure_before_kpa(log)) << "two samples are a change of the command";
+  }
+}
+
 TEST(CommandBefore, IsAddedAsASampleWithoutReadings) {
   const Log log = begun_at_a_step(7);
   const Log longer = with_command_before(log, 7);
