@@ -153,14 +153,15 @@ void write_gauge(const std::string& path, const std::vector<double>& positions,
 }
 
 void write_truth(const std::string& path, const Arguments& a,
-                 const std::map<std::string, blind::Scaled>& hidden, const blind::Sensor& sensor) {
+                 const std::map<std::string, blind::Scaled>& hidden, double change_mm,
+                 const blind::Sensor& sensor) {
   std::ofstream file(path);
   // Write the true values with all digits. With six digits, the rounding error of a frequency would exceed
   // the error of an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << sensor.noise_mm
        << ", ";
-  worlds::write_effects(file, hidden);
+  worlds::write_effects(file, hidden, change_mm);
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
@@ -212,6 +213,7 @@ int run(const Arguments& a) {
     if (a.closed_loop) close_loop(logs[i], sensor, span_mm / working_kpa, a.zero_mm, noise_seed(i));
   }
   auto outputs = blind::simulate(base, effects, logs, a.seed);
+  const double change_mm = worlds::recorded_change_mm(logs, outputs, blind::simulate(base, {}, logs, a.seed));
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (!a.closed_loop)
       for (double& y : outputs[i].displacement_mm) y += a.zero_mm;
@@ -219,7 +221,7 @@ int run(const Arguments& a) {
     write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], outputs[i], sensor, a.pressure,
               noise_seed(i));
   }
-  write_truth(a.truth, a, scaled, sensor);
+  write_truth(a.truth, a, scaled, change_mm, sensor);
   return 0;
 }
 

@@ -2,7 +2,7 @@
 """Tests changing.judge(), which judges the diagnoses of fingers that have changed."""
 import unittest
 
-from changing import intervals, judge
+from changing import intervals, is_changed, judge
 
 
 def diagnosis(named=(), rivals=None, verdict="cause_found"):
@@ -23,6 +23,11 @@ class Judge(unittest.TestCase):
         self.assertEqual(judge("leak", diagnosis(["ageing"])), "wrong")
         self.assertEqual(judge("leak", diagnosis(verdict="unchanged")), "missed")
         self.assertEqual(judge("leak", diagnosis(verdict="unexplained")), "unnamed")
+
+    def test_a_cause_that_does_not_change_the_logs_is_no_change(self):
+        self.assertFalse(is_changed({"recorded_change_mm": 0}))
+        self.assertTrue(is_changed({"recorded_change_mm": 1e-6}))
+        self.assertTrue(is_changed({}), "rows of earlier versions do not state the change")
 
     def test_intervals_are_compared_with_the_true_parameters(self):
         cause = {"id": "contact", "parameters": {"position_mm": {"value": 9.8, "ci95": [9.6, 10]}, "stiffening": {}}}

@@ -7,6 +7,7 @@ Without the option --variation, the programs must write the same bytes as the ve
 import csv
 import hashlib
 import io
+import json
 import pathlib
 import statistics
 import subprocess
@@ -61,6 +62,28 @@ class Off(unittest.TestCase):
         for name, program in PROGRAMS.items():
             with self.subTest(program=name):
                 self.assertEqual(logs(program, "--variation", "0", "--runs", "3"), logs(program))
+
+    def test_the_truth_states_the_change_of_the_recorded_displacement(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name), tempfile.TemporaryDirectory() as folder:
+                work = pathlib.Path(folder)
+                changes_mm = []
+                for strength in "2", "8":
+                    subprocess.run([program, "--cause", "transport_delay", "--strength", strength, "--out", work / strength,
+                                    "--truth", work / "truth.json"], check=True)
+                    changes_mm.append(json.loads((work / "truth.json").read_text())["recorded_change_mm"])
+                subprocess.run([program, "--out", work / "0", "--truth", work / "truth.json"], check=True)
+                self.assertEqual(json.loads((work / "truth.json").read_text())["recorded_change_mm"], 0)
+                for strength, change_mm in zip("28", changes_mm):
+                    squares = []
+                    for log in sorted((work / "0").iterdir()):
+                        before, after = (columns(path.read_bytes())["displacement_mm"]
+                                         for path in (log, work / strength / log.name))
+                        difference = [b - a for a, b in zip(before, after)]
+                        mean = statistics.mean(difference)
+                        squares += [(d - mean) ** 2 for d in difference]
+                    # The logs have equal noise with and without the cause. They are quantised to 0.01 mm.
+                    self.assertAlmostEqual(statistics.mean(squares) ** 0.5, change_mm, delta=0.01)
 
     def test_more_runs_are_distinct_and_keep_the_command_of_the_first(self):
         for name, program in PROGRAMS.items():

@@ -143,6 +143,18 @@ class Records(unittest.TestCase):
         self.assertIn("Run-to-run variation of strength 1:", page)
         self.assertIn("| 1 | 1 |\n| 3 | 0.15 |", page)
 
+    def test_a_cause_that_is_absent_from_the_logs_counts_as_an_unchanged_finger(self):
+        def row(change_mm, outcome, cause="sensor_saturation"):
+            return {"family": "first", "cause": cause, "strength": 1, "seed": 1, "columns": "pressure", "outcome": outcome,
+                    "verdict": "x", "named": [], "intervals": [], "recorded_change_mm": change_mm}
+        rows = [row(0, "unchanged"), row(0, "false_alarm"), row(0.3, "first"), row(0.03, "missed"), row(0.05, "listed")]
+        page = changed_campaign.page([*rows, {**row(0.03, "first"), "baseline_runs": 1}], "command", 6, "", "softgrip 0.1.0")
+        self.assertIn("In 2 cases with a hidden cause, the later logs are the same", page)
+        self.assertRegex(page, r"unchanged fingers that are reported as unchanged .* 50\.0 % .* \| 2 \|")
+        self.assertRegex(page, r"strength 1: true cause named first .* 50\.0 % .* \| 4 \|")
+        self.assertRegex(page, r"\| 0 to 1 times the noise \| 100\.0 % .*, 1 \| 0\.0 % .*, 1 \|")
+        self.assertRegex(page, r"\| 4 to 8 times the noise \| - \| 100\.0 % .*, 1 \|")
+
     def test_the_blind_table_names_all_outcomes_of_a_column(self):
         rows = [{"causes": [], "strength": 0, "outcome": outcome} for outcome in ("right", "unexplained", "failed")]
         head, _, clean = blind_page.table(rows)

@@ -1,5 +1,7 @@
 #include "world_program.h"
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iostream>
 #include <sstream>
@@ -20,6 +22,26 @@ double duration_s(const std::vector<Log>& logs) {
   double sum = 0;
   for (const Log& log : logs) sum += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
   return sum;
+}
+
+double recorded_change_mm(const std::vector<Log>& logs, const std::vector<Answer>& changed,
+                          const std::vector<Answer>& unchanged) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const std::vector<double>& with = changed[i].displacement_mm;
+    const std::vector<double>& without = unchanged[i].displacement_mm;
+    const auto samples = static_cast<double>(with.size() - logs[i].unrecorded);
+    double mean = 0, squares = 0;
+    for (std::size_t k = logs[i].unrecorded; k < with.size(); ++k) {
+      const double change = with[k] - without[k];
+      mean += change / samples;
+      squares += change * change;
+    }
+    sum += std::max(0.0, squares - samples * mean * mean);
+    count += with.size() - logs[i].unrecorded;
+  }
+  return std::sqrt(sum / static_cast<double>(count));
 }
 
 std::vector<std::string> ids_in(const std::string& list) {
@@ -43,8 +65,8 @@ void Options::read(int argc, char** argv) const {
   }
 }
 
-void write_effects(std::ostream& file, const std::map<std::string, Scaled>& hidden) {
-  file << "\"effects\": {";
+void write_effects(std::ostream& file, const std::map<std::string, Scaled>& hidden, double change_mm) {
+  file << "\"recorded_change_mm\": " << change_mm << ", \"effects\": {";
   const char* comma = "";
   for (const auto& [id, scaled] : hidden) {
     file << comma << "\"" << id << "\": {\"excess_mm\": " << scaled.excess_mm

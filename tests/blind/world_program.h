@@ -50,6 +50,10 @@ struct Answer {
 /// but the recording begins after them.
 void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
+/// Returns the RMS [mm] of the displacement change between two simulations, over all recorded samples. The
+/// mean change of each log is subtracted first. Must be called before drop_unrecorded().
+double recorded_change_mm(const std::vector<Log>& logs, const std::vector<Answer>& changed,
+                          const std::vector<Answer>& unchanged);
 
 /// Returns the ids in a list with commas.
 std::vector<std::string> ids_in(const std::string& list);
@@ -84,8 +88,9 @@ class Options {
   std::map<std::string, std::function<void(const std::string&)>> values_;
 };
 
-/// Writes the member "effects" of a file with the truth, and the end of this file.
-void write_effects(std::ostream& file, const std::map<std::string, Scaled>& hidden);
+/// Writes the members "recorded_change_mm" and "effects" of a file with the truth, and the end of this file.
+/// @param change_mm  result of recorded_change_mm() for these effects.
+void write_effects(std::ostream& file, const std::map<std::string, Scaled>& hidden, double change_mm);
 
 /// Returns the exit code of a program: the result of `run`, or 2 with a message if `run` throws.
 int exit_code_of(const char* program, const std::function<int()>& run);

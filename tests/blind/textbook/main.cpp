@@ -136,7 +136,7 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
 }
 
 void write_truth(const Arguments& a, const textbook::World& world, const std::map<std::string, double>& own,
-                 const std::map<std::string, textbook::Scaled>& hidden) {
+                 const std::map<std::string, textbook::Scaled>& hidden, double change_mm) {
   std::ofstream file(a.truth);
   // Write the true values with all digits. With six digits, the rounding error of a frequency would exceed
   // the error of an estimate from ten minutes of logs.
@@ -150,7 +150,7 @@ void write_truth(const Arguments& a, const textbook::World& world, const std::ma
     comma = ", ";
   }
   file << "}, ";
-  worlds::write_effects(file, hidden);
+  worlds::write_effects(file, hidden, change_mm);
   if (!file.flush()) throw std::runtime_error("cannot write " + a.truth);
 }
 
@@ -189,12 +189,14 @@ int run(const Arguments& a) {
     if (a.closed_loop) close_loop(logs[i], world, a.zero_mm, drive_seed * 37 + i);
   }
   auto answers = textbook::simulate(world, effects, logs, a.seed);
+  const double change_mm =
+      worlds::recorded_change_mm(logs, answers, textbook::simulate(world, {}, logs, a.seed));
   std::filesystem::create_directories(a.out);
   for (std::size_t i = 0; i < logs.size(); ++i) {
     textbook::drop_unrecorded(logs[i], answers[i]);
     write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], answers[i], a, drive_seed * 37 + i);
   }
-  write_truth(a, world, textbook::own_physics(world, whole, a.seed, visible_mm), hidden);
+  write_truth(a, world, textbook::own_physics(world, whole, a.seed, visible_mm), hidden, change_mm);
   return 0;
 }
 
