@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/limits/limits.h"
@@ -59,6 +60,20 @@ StructureFitOptions with_ridge(double ridge) {
   return options;
 }
 
+/// Returns the division without the beginnings of the records whose start is estimated. The readings of the
+/// beginning are always fitted, because no other readings determine the start. Without them, a model with an
+/// estimated start has a large error on the first block, regardless of its structure.
+Division without_starts(Division division, const std::vector<Record>& records) {
+  for (Block& block : division.blocks) {
+    const Record& record = records[block.record];
+    if (block.first > 0 || record.start == Start::rest || !record.offset_free) continue;
+    const std::size_t gap = block.hidden_last - block.last;
+    block.hidden_first = std::min(samples_for_start(record), block.last / 2);
+    block.first = std::min(block.hidden_first + gap, block.last);
+  }
+  return division;
+}
+
 StructureTrial trial_of(const BaseStructure& structure) {
   StructureTrial trial;
   trial.structure = structure;
@@ -76,7 +91,10 @@ bool stays_bounded(const FitPoint& point, const std::vector<Record>& records) {
 
 StructureJudge::StructureJudge(const std::vector<Record>& records, const StructureChoiceOptions& options,
                                RungsBetween rungs)
-    : records_(records), options_(options), grid_(grid_for(records)), division_(divide_into_fifths(records)) {
+    : records_(records),
+      options_(options),
+      grid_(grid_for(records)),
+      division_(without_starts(divide_into_fifths(records), records)) {
   if (options.slow_from_s > 0) grid_.slow_from_s = options.slow_from_s;
   if (rungs == RungsBetween::yes) grid_.ladder_s = with_rungs_between(grid_.ladder_s);
 }

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "model/blocks/ageing.h"
 #include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -57,6 +61,37 @@ TEST(StaysBounded, IsFalseIfOneRecordIsExceeded) {
   Record small = stroke(model);
   for (double& reading : small.reading_mm) reading *= 0.1;
   EXPECT_FALSE(stays_bounded({model, {StartState{}, StartState{}}}, {stroke(model), small}));
+}
+
+/// Returns a log of 60 s that begins at 20 kPa while 4 mm of creep remain from the time before the log.
+Record begun_during_creep() {
+  Log log;
+  log.name = "begun_during_creep";
+  for (int i = 0; i < 1200; ++i) {
+    const double t_s = 0.05 * i;
+    log.time_s.push_back(t_s);
+    log.pressure_command_kpa.push_back(30 - 10 * std::cos(1.1 * t_s) + 8 * std::sin(0.37 * t_s));
+  }
+  log.displacement_mm.assign(log.size(), 0);
+  const model::Model creeping = model::with_block(
+      finger(0.5, 0.1), {model::block_type<model::KelvinVoigt>(), {1e9, 10, 20}});  // time constant of 2 s
+  StartState start;
+  start.unsettled_mm = {-4};
+  log.displacement_mm = predict(creeping, make_records({log}, {})[0], start);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise_mm(0, 0.02);
+  for (double& reading : log.displacement_mm) reading += noise_mm(random);
+  return make_records({log}, {})[0];
+}
+
+TEST(StructureJudge, AnEstimatedStartDoesNotIncreaseTheErrorOnTheFirstBlock) {
+  const std::vector<Record> records{begun_during_creep()};
+  ASSERT_TRUE(records[0].start_unknown);
+  const StructureChoiceOptions options;
+  const StructureTrial trial = StructureJudge(records, options).judge({.characteristic = false}, 1e-5);
+  ASSERT_EQ(trial.block_losses_mm2.size(), 10U);
+  const double first_mm = std::sqrt(trial.block_losses_mm2[0]);
+  EXPECT_LT(first_mm, 3 * trial.rmse_mm) << "RMSE of the fit: " << trial.rmse_mm;
 }
 
 }  // namespace
