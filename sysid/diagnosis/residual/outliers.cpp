@@ -12,79 +12,20 @@
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/isolated_values.h"
 #include "sysid/logs/record.h"
 #include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest distance of an outlier from the median of its four neighbours, in standard deviations of the
-/// noise. For a correct reading, the distance has a standard deviation of about 1.15. It exceeds the limit in
-/// less than 2 of 10 million readings.
-constexpr double beyond = 6.0;
-
-double neighbours_median(const std::vector<double>& y, std::size_t i) {
-  std::array<double, 4> near{y[i - 2], y[i - 1], y[i + 1], y[i + 2]};
-  std::sort(near.begin(), near.end());
-  return 0.5 * (near[1] + near[2]);
-}
-
-/// Returns the change of the reading from the two samples before sample `i` to the two samples after it. In a
-/// fast motion, this change alone makes a reading deviate from its neighbours. The reading then does not
-/// count as an outlier.
-double motion(const std::vector<double>& y, std::size_t i) {
-  return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
-}
-
-/// `reach`: largest distance between a reading and its neighbours, in samples. `fewest_neighbours`: smallest
-/// number of neighbours on each side.
-constexpr std::size_t reach = 3;
-constexpr std::size_t fewest_neighbours = 2;
-/// Smallest distance of an isolated reading from the median of its neighbours, as a multiple of the spread of
-/// the neighbours.
-constexpr double alone = 4.0;
 /// Uncertainty of the time of a reading [samples]. Its reasons are clocks, latencies and the corners of a
 /// motion.
 constexpr double timing_samples = 1.5;
 
-/// Median and spread of the neighbours of a reading or of a residual. The spread is the second largest
-/// distance from the median, because the neighbour with the largest distance may itself be an outlier.
-struct Neighbourhood {
-  double median_mm = 0;
-  double spread_mm = 0;
-  bool known = false;
-};
-
-Neighbourhood neighbourhood(const std::vector<double>& r, std::size_t i) {
-  std::array<double, 2 * reach> near{};
-  std::size_t count = 0, before = 0;
-  for (std::size_t j = i < reach ? 0 : i - reach; j <= std::min(i + reach, r.size() - 1); ++j) {
-    if (j == i || !std::isfinite(r[j])) continue;
-    near[count++] = r[j];
-    before += j < i ? 1 : 0;
-  }
-  Neighbourhood n;
-  if (before < fewest_neighbours || count - before < fewest_neighbours) return n;
-  const auto end = near.begin() + static_cast<long>(count);
-  std::sort(near.begin(), end);
-  n.median_mm = 0.5 * (near[(count - 1) / 2] + near[count / 2]);
-  for (auto at = near.begin(); at != end; ++at) *at = std::abs(*at - n.median_mm);
-  std::sort(near.begin(), end);
-  n.spread_mm = near[count - 2];
-  n.known = true;
-  return n;
-}
-
-bool is_outlier(const std::vector<double>& y, std::size_t i, double noise_mm, double& size) {
-  size = y[i] - neighbours_median(y, i);
-  if (!std::isfinite(size) || std::abs(size) <= beyond * noise_mm || std::abs(size) <= 3 * motion(y, i))
-    return false;
-  const Neighbourhood near = neighbourhood(y, i);
-  return near.known && std::abs(size) > alone * near.spread_mm;
-}
-
 /// Returns the largest change of the prediction from one sample to the next, near sample i.
 double largest_step(const std::vector<double>& y, const std::vector<double>& r, std::size_t i) {
+  constexpr std::size_t reach = isolated_reach;
   double largest = 0;
   for (std::size_t j = i < reach ? 1 : i - reach + 1; j <= std::min(i + reach, r.size() - 1); ++j) {
     const double step = std::abs((y[j] - r[j]) - (y[j - 1] - r[j - 1]));
@@ -115,8 +56,8 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
-  // Noise alone causes practically no outliers above the limit `beyond`, but a knock on the table can cause a
-  // few. Therefore a minimum number of outliers is required.
+  // Noise alone causes practically no outliers above the limit `isolated_beyond`, but a knock on the table
+  // can cause a few. Therefore a minimum number of outliers is required.
   evidence.distorts = evidence.excess_mm > limits::hidden_by_noise * noise_mm;
   evidence.present = evidence.count >= limits::fewest_occurrences && evidence.distorts;
 }
@@ -176,32 +117,18 @@ void hide_far_ends(Record& record, OutlierEvidence& evidence) {
 }
 
 void hide_isolated(Record& record, double noise_mm, OutlierEvidence& evidence) {
-  const Readings readings = readings_of(record);
-  for (std::size_t i = 2; i + 2 < readings.mm.size(); ++i) {
-    double size = 0;
-    if (is_outlier(readings.mm, i, noise_mm, size)) hide(record, readings.samples[i], size, evidence);
-  }
+  for (const IsolatedValue& found : isolated_values(record.reading_mm, noise_mm))
+    hide(record, found.sample, found.distance, evidence);
 }
 
 constexpr std::size_t named_readings = 3;
 /// Lower limit of the noise as a share of the span. It is used if the readings contain almost no noise.
 constexpr double least_noise_share = 1e-3;
 
-/// Returns the distance from the 5 % quantile to the 95 % quantile of the readings. Single wrong readings do
-/// not change this distance.
-double usual_span_mm(const Record& record) {
-  std::vector<double> sorted;
-  std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(sorted),
-               [](double value) { return std::isfinite(value); });
-  if (sorted.empty()) return 0;
-  std::sort(sorted.begin(), sorted.end());
-  return sorted[sorted.size() - 1 - sorted.size() / 20] - sorted[sorted.size() / 20];
-}
-
 double noise_of(const std::vector<Record>& records) {
   double noise_mm = measured_noise_mm(records);
   for (const Record& record : records)
-    noise_mm = std::max(noise_mm, least_noise_share * usual_span_mm(record));
+    noise_mm = std::max(noise_mm, least_noise_share * usual_span(record.reading_mm));
   return noise_mm;
 }
 
@@ -243,8 +170,9 @@ std::size_t hide_outliers_beside(std::vector<Record>& records,
     for (std::size_t i = 0; i < r.size(); ++i) {
       if (!std::isfinite(r[i]) || !std::isfinite(y[i])) continue;
       const Neighbourhood near = neighbourhood(r, i);
-      const double size = r[i] - near.median_mm;
-      if (!near.known || std::abs(size) <= beyond * noise_mm || std::abs(size) <= alone * near.spread_mm ||
+      const double size = r[i] - near.median;
+      if (!near.known || std::abs(size) <= isolated_beyond * noise_mm ||
+          std::abs(size) <= isolated_alone * near.spread ||
           std::abs(size) <= timing_samples * largest_step(y, r, i)) {
         continue;
       }
