@@ -163,14 +163,18 @@ Smooth disturbances(const Path& path, double drift_rate) {
 }  // namespace
 
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
+  std::vector<std::size_t> measured;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) measured.push_back(i);
+  }
   std::vector<double> deviations;
-  for (std::size_t i = 2; i < values.size(); ++i) {
+  for (std::size_t k = 2; k < measured.size(); ++k) {
     // Compute the deviation of a value from the straight line between its neighbours. The divisor makes the
     // standard deviation of the result equal to the standard deviation of a single value.
-    const double share = (time_s[i - 1] - time_s[i - 2]) / (time_s[i] - time_s[i - 2]);
-    const double off = values[i - 1] - (1 - share) * values[i - 2] - share * values[i];
-    if (std::isfinite(off))
-      deviations.push_back(std::abs(off) / std::sqrt(1 + share * share + (1 - share) * (1 - share)));
+    const std::size_t before = measured[k - 2], at = measured[k - 1], after = measured[k];
+    const double share = (time_s[at] - time_s[before]) / (time_s[after] - time_s[before]);
+    const double off = values[at] - (1 - share) * values[before] - share * values[after];
+    deviations.push_back(std::abs(off) / std::sqrt(1 + share * share + (1 - share) * (1 - share)));
   }
   // The magnitude of a standard normal variable has a median of 0.6745.
   return median_of(std::span(deviations)) / 0.6745;

@@ -9,7 +9,8 @@ namespace softgrip::sysid {
 
 /// Returns the standard deviation of white noise on a smooth signal. The estimate is robust: it is the median
 /// deviation of a value from the straight line between its neighbours, scaled to a standard deviation. The
-/// sampling may be irregular. Returns 0 for fewer than three values.
+/// sampling may be irregular. Values that are not finite are left out, because a sensor may be slower than
+/// the log. Returns 0 for fewer than three finite values.
 [[nodiscard]] double white_noise_of(std::span<const double> time_s, std::span<const double> values);
 
 /// Returns the signal without its noise. The model of the signal is a level with a slope that drifts. A

@@ -40,6 +40,21 @@ TEST(InputSmoothing, FindsTheNoiseOfASignal) {
   }
 }
 
+TEST(InputSmoothing, FindsTheNoiseOfASensorThatIsSlowerThanTheLog) {
+  const Signal s = triangles(0.3, 3);
+  std::vector<double> sparse = s.measured, time_s, values;
+  for (std::size_t i = 0; i < sparse.size(); ++i) {
+    if (i % 2 == 1) {
+      sparse[i] = std::nan("");
+      continue;
+    }
+    time_s.push_back(s.time_s[i]);
+    values.push_back(sparse[i]);
+  }
+  EXPECT_EQ(white_noise_of(s.time_s, sparse), white_noise_of(time_s, values));
+  EXPECT_NEAR(white_noise_of(s.time_s, sparse), 0.3, 0.03);
+}
+
 TEST(InputSmoothing, RemovesMostNoiseAndKeepsCorners) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Signal s = triangles(0.3, seed);
