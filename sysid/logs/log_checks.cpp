@@ -1,10 +1,13 @@
-#include "sysid/logs/log_header.h"
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/numbers.h"
+#include "sysid/logs/input_smoothing.h"
+#include "sysid/logs/isolated_values.h"
+#include "sysid/logs/log_header.h"
 #include "sysid/logs/sensor_codes.h"
 #include "sysid/logs/unit_factors.h"
 
@@ -57,6 +60,7 @@ class Check {
     time_plausible();
     magnitudes(options.command_unit);
     if (!options.need_readings) return;
+    isolated_pressures();
     intervals();
     missing_readings();
     if (options.require_motion) excitation();
@@ -185,6 +189,36 @@ class Check {
                  ? "check if the column is in degrees"
                  : "if the column is in micrometres, divide the values by 1000");
     }
+  }
+
+  /// Removes isolated values of the measured pressure. A fit with the measured pressure as its input would
+  /// otherwise follow them. The pressure may follow a pulse of the command, so a distance that is not larger
+  /// than the change of the command is no error.
+  void isolated_pressures() {
+    constexpr double least_noise_share = 1e-3;
+    constexpr std::size_t named = 3;
+    std::vector<double>& pressure = log_.pressure_kpa;
+    const double noise_kpa =
+        std::max(white_noise_of(log_.time_s, pressure), least_noise_share * usual_span(pressure));
+    std::string first;
+    std::size_t at = log_.size(), count = 0;
+    for (const IsolatedValue& found : isolated_values(pressure, noise_kpa)) {
+      const std::size_t from = found.sample - std::min(found.sample, isolated_reach);
+      const auto nearby = std::span(log_.pressure_command_kpa).subspan(from);
+      const auto [low, high] =
+          std::ranges::minmax(nearby.first(std::min(nearby.size(), 2 * isolated_reach + 1)));
+      if (std::abs(found.distance) <= high - low) continue;
+      if (++count <= named)
+        first += (count > 1 ? ", " : "") + significant(pressure[found.sample]) + " kPa at " +
+                 significant(log_.time_s[found.sample]) + " s";
+      at = std::min(at, found.sample);
+      pressure[found.sample] = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (count == 0) return;
+    if (count > named) first += " and " + std::to_string(count - named) + " more";
+    note(at, std::to_string(count) + " of " + std::to_string(pressure.size()) +
+                 (count == 1 ? " measured pressures is isolated" : " measured pressures are isolated") +
+                 ", removed: " + first);
   }
 
   void missing_readings() {

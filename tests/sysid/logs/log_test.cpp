@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -463,6 +465,27 @@ TEST(Log, SameCommandMayHaveAnotherSamplingAndSmallDeviations) {
   for (double& p : vacuum.pressure_command_kpa) p = -p;
   EXPECT_FALSE(have_same_command(log, vacuum, 0.05));
   EXPECT_FALSE(have_same_command(log, slice(log, 0, 40), 0.05)) << "the shorter log ends at 39 kPa";
+}
+
+TEST(MeasuredPressure, IsolatedValuesAreRemovedWithANote) {
+  const auto read_with = [](const std::function<void(Log&)>& change) {
+    Log log = good_log();
+    log.pressure_kpa = log.pressure_command_kpa;
+    change(log);
+    Problems problems;
+    const std::optional<Log> read = parse_log("log.csv", format_log(log), problems);
+    EXPECT_TRUE(read) << problems.format();
+    return read.value_or(Log{});
+  };
+  const Log log = read_with([](Log& l) { l.pressure_kpa[30] = 200; });
+  EXPECT_TRUE(std::isnan(log.pressure_kpa[30]));
+  EXPECT_EQ(log.pressure_kpa[29], 29);
+  ASSERT_EQ(log.notes.size(), 1U);
+  EXPECT_EQ(log.notes[0].text, "1 of 100 measured pressures is isolated, removed: 200 kPa at 0.3 s");
+  EXPECT_EQ(log.notes[0].line, 32);
+  const Log pulsed = read_with([](Log& l) { l.pressure_command_kpa[30] = l.pressure_kpa[30] = 90; });
+  EXPECT_EQ(pulsed.pressure_kpa[30], 90) << "the pressure follows a pulse of the command";
+  EXPECT_TRUE(pulsed.notes.empty());
 }
 
 }  // namespace
