@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numbers>
+#include <span>
 
+#include "base/statistics.h"
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/quantisation.h"
 #include "model/blocks/sensor_noise.h"
@@ -27,6 +31,37 @@ void fill_missing(std::vector<double>& values) {
     last = i;
   }
   for (std::size_t j = last + 1; j < values.size() && last < values.size(); ++j) values[j] = values[last];
+}
+
+/// Returns true if the readings at the beginning show that the zero of the sensor has no offset. They are the
+/// readings before the drive changes. Their median must not differ significantly from 0, so that a single
+/// wrong reading does not determine the offset. If there is only one such reading, the step to the next
+/// reading must not be larger than all other steps.
+bool begins_at_zero(const Record& record) {
+  constexpr double constant_share = 0.01;  // of the largest drive
+  std::vector<double> readings;
+  std::size_t next = 0;
+  for (; next < record.size(); ++next) {
+    const bool stands =
+        std::abs(record.drive_kpa[next] - record.drive_kpa.front()) <= constant_share * record.largest_kpa;
+    if (!stands && !readings.empty()) break;
+    if (std::isfinite(record.reading_mm[next])) readings.push_back(record.reading_mm[next]);
+  }
+  if (readings.empty()) return false;
+  double error_mm = fast_noise_mm(record);
+  if (readings.size() > 1) {
+    // The standard error of a median is sqrt(pi / 2) times the standard error of a mean.
+    error_mm *= std::sqrt(std::numbers::pi / 2 / static_cast<double>(readings.size()));
+  } else {
+    std::vector<double> all;
+    std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(all),
+                 [](double y) { return std::isfinite(y); });
+    double largest_mm = 0;
+    for (std::size_t i = 2; i < all.size(); ++i)
+      largest_mm = std::max(largest_mm, std::abs(all[i] - all[i - 1]));
+    if (all.size() > 2 && std::abs(all[1] - all[0]) > largest_mm) return false;
+  }
+  return std::abs(median_of(std::span(readings))) < std::max(4 * error_mm, 1e-3 * record.span_mm);
 }
 
 Record make_record(const Log& log, const RecordOptions& options, double campaign_time_s) {
@@ -66,11 +101,7 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   const bool pressurised = std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa;
   record.start_unknown =
       options.start == Start::unknown || (options.start == Start::automatic && pressurised);
-  const auto first = std::find_if(record.reading_mm.begin(), record.reading_mm.end(),
-                                  [](double y) { return std::isfinite(y); });
-  const bool at_zero = first != record.reading_mm.end() &&
-                       std::abs(*first) < std::max(4 * fast_noise_mm(record), 1e-3 * record.span_mm);
-  record.offset_free = record.start_unknown || pressurised || !at_zero;
+  record.offset_free = record.start_unknown || pressurised || !begins_at_zero(record);
   return record;
 }
 

@@ -1,0 +1,55 @@
+#include "sysid/logs/record.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace softgrip::sysid::record_test {
+namespace {
+
+constexpr double noise_mm = 0.02;
+
+/// Returns a log of 20 s at 50 Hz. The command is 0 for the first `rest_s`, and then a slow triangle. The
+/// readings have noise and an offset.
+Log beginning_at_rest(double rest_s, double offset_mm) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0, noise_mm);
+  Log log;
+  for (int i = 0; i < 1000; ++i) {
+    const double t_s = 0.02 * i, motion_s = std::max(0.0, t_s - rest_s);
+    log.time_s.push_back(t_s);
+    log.pressure_command_kpa.push_back(10 * (4 - std::abs(std::fmod(motion_s, 8.0) - 4)));
+    log.displacement_mm.push_back(0.3 * log.pressure_command_kpa.back() + offset_mm + noise(random));
+  }
+  return log;
+}
+
+bool has_offset(const Log& log) {
+  return make_records({log}, {})[0].offset_free;
+}
+
+TEST(RecordOffset, IsEstimatedIfTheReadingsBeforeTheMotionAreNotZero) {
+  EXPECT_FALSE(has_offset(beginning_at_rest(2, 0)));
+  EXPECT_TRUE(has_offset(beginning_at_rest(2, 5)));
+  EXPECT_TRUE(has_offset(beginning_at_rest(2, 3 * noise_mm)))
+      << "100 readings show an offset of three standard deviations of one reading";
+}
+
+TEST(RecordOffset, IsNotDeterminedByOneWrongReading) {
+  for (const double rest_s : {2.0, 0.0}) {
+    Log shifted = beginning_at_rest(rest_s, 5);
+    shifted.displacement_mm[0] = 0;
+    EXPECT_TRUE(has_offset(shifted)) << "only the first reading is 0, the rest lasts " << rest_s << " s";
+  }
+  Log log = beginning_at_rest(2, 0);
+  log.displacement_mm[0] = 5;
+  EXPECT_FALSE(has_offset(log)) << "only the first reading is not 0";
+}
+
+TEST(RecordOffset, MotionFromTheFirstSampleIsNoOffset) {
+  EXPECT_FALSE(has_offset(beginning_at_rest(0, 0)));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::record_test
