@@ -116,6 +116,34 @@ void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   }
 }
 
+/// Hides the first and the last reading if they are isolated: far from the four readings beside them, while
+/// neither these readings nor the pressure change. A sensor may deliver its last value from before the start.
+void hide_isolated_ends(Record& record, double noise_mm, OutlierEvidence& evidence) {
+  constexpr std::size_t beside = 4;
+  constexpr double constant_share = 0.01;  // of the largest pressure
+  const Readings readings = readings_of(record);
+  const std::size_t count = readings.mm.size();
+  if (count < 10 * beside) return;
+  for (const bool first : {true, false}) {
+    const auto place = [&](std::size_t k) { return first ? k : count - 1 - k; };
+    std::array<double, beside> near{};
+    double low_kpa = record.drive_kpa[readings.samples[place(0)]], high_kpa = low_kpa;
+    for (std::size_t k = 0; k < beside; ++k) {
+      near[k] = readings.mm[place(k + 1)];
+      const double drive_kpa = record.drive_kpa[readings.samples[place(k + 1)]];
+      low_kpa = std::min(low_kpa, drive_kpa);
+      high_kpa = std::max(high_kpa, drive_kpa);
+    }
+    if (high_kpa - low_kpa > constant_share * record.largest_kpa) continue;
+    const auto [lowest, highest] = std::minmax_element(near.begin(), near.end());
+    const double spread_mm = *highest - *lowest;
+    const double distance_mm = readings.mm[place(0)] - median_of(std::span<double>(near));
+    if (std::abs(distance_mm) > isolated_beyond * noise_mm &&
+        std::abs(distance_mm) > isolated_alone * spread_mm)
+      hide(record, readings.samples[place(0)], distance_mm, evidence);
+  }
+}
+
 void hide_isolated(Record& record, double noise_mm, OutlierEvidence& evidence) {
   for (const IsolatedValue& found : isolated_values(record.reading_mm, noise_mm))
     hide(record, found.sample, found.distance, evidence);
@@ -154,6 +182,7 @@ OutlierEvidence hide_outliers(std::vector<Record>& records, double noise_mm) {
     evidence.readings += record.readings;
     hide_codes(record, evidence);
     hide_far_ends(record, evidence);
+    hide_isolated_ends(record, noise_mm, evidence);
     hide_isolated(record, noise_mm, evidence);
   }
   weigh(evidence, noise_mm);

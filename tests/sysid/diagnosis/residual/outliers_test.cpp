@@ -156,6 +156,20 @@ TEST(WrongReadings, FirstOrLastReadingCanBeRemoved) {
   expect_taken_out(moving(), {{1999, -388.1}}, "-388.1 mm");
 }
 
+TEST(WrongReadings, FirstReadingWithinTheMotionIsRemovedIfNothingMoves) {
+  Log log = moving();
+  for (std::size_t i = 0; i < 50; ++i) {
+    log.pressure_command_kpa[i] = 20;
+    log.displacement_mm[i] = 10 + 0.02 * std::sin(1.0 * static_cast<double>(i * i));
+  }
+  expect_taken_out(log, {{0, 2.5}}, "2.5 mm at 0 s");
+  expect_taken_out(log, {{0, 0.0}}, "0 mm at 0 s");
+  log.pressure_command_kpa[0] = 5;  // the pressure jumps after the first sample, so the reading may jump too
+  log.displacement_mm[0] = 2.5;
+  std::vector<Log> logs{log};
+  EXPECT_TRUE(take_out_wrong_readings(logs).empty());
+}
+
 TEST(WrongReadings, NoReadingIsRemovedFromACorrectMotion) {
   Log step = moving();
   for (std::size_t i = 0; i < step.size(); ++i) {
