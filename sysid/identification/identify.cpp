@@ -199,7 +199,8 @@ void add_warnings(Identification& result) {
                                 " does not start from rest, so the initial state of this log was estimated");
     } else if (record.offset_free) {
       result.warnings.push_back(
-          record.name + " begins with readings that are not 0, so an offset of the sensor was estimated");
+          record.name +
+          " does not begin with readings of 0 without pressure, so an offset of the sensor was estimated");
     }
   }
   if (result.noise.lag1_correlation > 0.5) {

@@ -64,6 +64,29 @@ bool begins_at_zero(const Record& record) {
   return std::abs(median_of(std::span(readings))) < std::max(4 * error_mm, 1e-3 * record.span_mm);
 }
 
+/// Returns true if the record begins with a rest almost without pressure: the drive stays constant for 20
+/// readings, and the readings are steady. A converter or a pressure sensor with an offset shows a small
+/// pressure at such a rest.
+bool rests_almost_without_pressure(const Record& record) {
+  constexpr double constant_share = 0.01, low_share = 0.05;  // of the largest drive
+  constexpr std::size_t fewest = 20;
+  constexpr double steady_share = 0.01;  // of the span
+  if (std::abs(record.drive_kpa.front()) > low_share * record.largest_kpa) return false;
+  std::vector<double> readings;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (std::abs(record.drive_kpa[i] - record.drive_kpa.front()) > constant_share * record.largest_kpa) break;
+    if (std::isfinite(record.reading_mm[i])) readings.push_back(record.reading_mm[i]);
+  }
+  if (readings.size() < fewest) return false;
+  const auto earlier = std::span(readings).first(readings.size() / 2);
+  const auto later = std::span(readings).last(readings.size() / 2);
+  // The standard error of a median is sqrt(pi / 2) times the standard error of a mean.
+  const double error_mm =
+      std::sqrt(std::numbers::pi / static_cast<double>(earlier.size())) * fast_noise_mm(record);
+  return std::abs(median_of(later) - median_of(earlier)) <
+         std::max(4 * error_mm, steady_share * record.span_mm);
+}
+
 Record make_record(const Log& log, const RecordOptions& options, double campaign_time_s) {
   Record record;
   record.name = log.name;
@@ -100,7 +123,8 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   constexpr double next_to_nothing = 0.01;
   const bool pressurised = std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa;
   record.start_unknown =
-      options.start == Start::unknown || (options.start == Start::automatic && pressurised);
+      options.start == Start::unknown ||
+      (options.start == Start::automatic && pressurised && !rests_almost_without_pressure(record));
   record.offset_free = record.start_unknown || pressurised || !begins_at_zero(record);
   return record;
 }

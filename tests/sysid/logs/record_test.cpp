@@ -51,5 +51,31 @@ TEST(RecordOffset, MotionFromTheFirstSampleIsNoOffset) {
   EXPECT_FALSE(has_offset(beginning_at_rest(0, 0)));
 }
 
+bool has_unknown_start(const Log& log) {
+  return make_records({log}, {})[0].start_unknown;
+}
+
+Log with_command_offset(Log log, double offset_kpa) {
+  for (double& command_kpa : log.pressure_command_kpa) command_kpa += offset_kpa;
+  return log;
+}
+
+TEST(RecordStart, IsARestIfTheReadingsAreSteadyAtASmallPressure) {
+  EXPECT_FALSE(has_unknown_start(beginning_at_rest(2, 0)));
+  const Log offset = with_command_offset(beginning_at_rest(2, 0), 1);  // 2.4 % of the largest command
+  EXPECT_FALSE(has_unknown_start(offset));
+  EXPECT_TRUE(has_offset(offset)) << "the displacement at 1 kPa is unknown";
+}
+
+TEST(RecordStart, IsUnknownDuringMotionAndUnderPressure) {
+  EXPECT_TRUE(has_unknown_start(with_command_offset(beginning_at_rest(0, 0), 1)))
+      << "the command moves from the first sample on";
+  EXPECT_TRUE(has_unknown_start(with_command_offset(beginning_at_rest(2, 0), 10)));
+  Log creeping = with_command_offset(beginning_at_rest(2, 0), 1);
+  for (std::size_t i = 0; i < creeping.size(); ++i)
+    creeping.displacement_mm[i] += 2 * std::exp(-creeping.time_s[i] / 2);
+  EXPECT_TRUE(has_unknown_start(creeping)) << "the finger creeps after an earlier motion";
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::record_test
