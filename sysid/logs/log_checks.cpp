@@ -2,9 +2,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "base/numbers.h"
+#include "sysid/logs/first_command.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/log_header.h"
@@ -60,6 +62,7 @@ class Check {
     time_plausible();
     magnitudes(options.command_unit);
     if (!options.need_readings) return;
+    first_command();
     isolated_pressures();
     intervals();
     missing_readings();
@@ -189,6 +192,17 @@ class Check {
                  ? "check if the column is in degrees"
                  : "if the column is in micrometres, divide the values by 1000");
     }
+  }
+
+  /// Replaces a wrong command at the beginning, because a fit would assume that the finger begins under it.
+  void first_command() {
+    const std::optional<WrongFirstCommand> wrong = wrong_first_command(log_);
+    if (!wrong) return;
+    std::fill_n(log_.pressure_command_kpa.begin(), wrong->samples, wrong->next_kpa);
+    note(0, "the log begins with a command of " + significant(wrong->command_kpa) + " kPa in " +
+                std::to_string(wrong->samples) + (wrong->samples == 1 ? " sample" : " samples") +
+                ", but the readings belong to the next command, " + significant(wrong->next_kpa) +
+                " kPa, which was used instead");
   }
 
   /// Removes isolated values of the measured pressure. A fit with the measured pressure as its input would

@@ -1,5 +1,6 @@
 #include "sysid/logs/log.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -486,6 +487,24 @@ TEST(MeasuredPressure, IsolatedValuesAreRemovedWithANote) {
   const Log pulsed = read_with([](Log& l) { l.pressure_command_kpa[30] = l.pressure_kpa[30] = 90; });
   EXPECT_EQ(pulsed.pressure_kpa[30], 90) << "the pressure follows a pulse of the command";
   EXPECT_TRUE(pulsed.notes.empty());
+}
+
+TEST(FirstCommand, WrongFirstCommandIsReplacedWithANote) {
+  Log log = good_log();
+  std::fill_n(log.pressure_command_kpa.begin(), 25, 0.0);
+  std::fill_n(log.displacement_mm.begin(), 25, 0.25);
+  log.displacement_mm[3] = 0.251;
+  log.pressure_command_kpa[0] = 40;
+  Problems problems;
+  const std::optional<Log> read = parse_log("log.csv", format_log(log), problems);
+  ASSERT_TRUE(read) << problems.format();
+  EXPECT_EQ(read->pressure_command_kpa[0], 0);
+  ASSERT_FALSE(read->notes.empty());
+  EXPECT_EQ(
+      read->notes[0].text,
+      "the log begins with a command of 40 kPa in 1 sample, but the readings belong to the next command, "
+      "0 kPa, which was used instead");
+  EXPECT_EQ(read->notes[0].line, 2);
 }
 
 }  // namespace

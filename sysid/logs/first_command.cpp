@@ -1,0 +1,68 @@
+#include "sysid/logs/first_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/statistics.h"
+#include "sysid/logs/unit_factors.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::size_t most_wrong = 4;    // samples
+constexpr std::size_t fewest_held = 20;  // samples
+/// Two commands differ if their distance exceeds this share of the range of the commands.
+constexpr double differs_share = 0.1;
+
+/// Returns the median of the readings from sample `first` on, under commands within 10 % of the range around
+/// a command; NaN if there is none.
+double usual_reading_mm(const Log& log, std::size_t first, double command_kpa, double range_kpa) {
+  std::vector<double> readings;
+  for (std::size_t i = first; i < log.size(); ++i) {
+    if (std::isfinite(log.displacement_mm[i]) &&
+        std::abs(log.pressure_command_kpa[i] - command_kpa) <= differs_share * range_kpa)
+      readings.push_back(log.displacement_mm[i]);
+  }
+  return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
+}
+
+}  // namespace
+
+std::optional<WrongFirstCommand> wrong_first_command(const Log& log) {
+  const std::vector<double>& command = log.pressure_command_kpa;
+  std::size_t samples = 1;
+  while (samples < command.size() && command[samples] == command.front()) ++samples;
+  if (samples > most_wrong || log.size() < samples + 2 * fewest_held) return {};
+  const auto [low, high] = std::ranges::minmax(std::span(command).subspan(samples));
+  const double range_kpa = high - low;
+  const WrongFirstCommand found{samples, command.front(), command[samples]};
+  if (!(std::abs(found.command_kpa - found.next_kpa) > differs_share * range_kpa)) return {};
+  std::size_t standing = samples;
+  while (standing < log.size() && std::abs(command[standing] - found.next_kpa) <= 0.01 * range_kpa)
+    ++standing;
+  if (standing < samples + fewest_held || standing == log.size()) return {};
+  std::vector<double> first;
+  for (std::size_t i = 0; i < samples + most_wrong; ++i) {
+    if (std::isfinite(log.displacement_mm[i])) first.push_back(log.displacement_mm[i]);
+  }
+  if (first.empty()) return {};
+  const double first_mm = median_of(std::span(first));
+  const double under_next_mm = usual_reading_mm(log, standing, found.next_kpa, range_kpa);
+  const double under_first_mm = usual_reading_mm(log, standing, found.command_kpa, range_kpa);
+  if (std::isnan(under_next_mm)) return {};
+  bool is_wrong = std::abs(first_mm - under_next_mm) < std::abs(first_mm - under_first_mm);
+  if (std::isnan(under_first_mm)) {
+    // No other sample has the first command. It is beyond all other commands, so the reading would be beyond
+    // all other readings.
+    const auto extent = extent_of(
+        std::vector(log.displacement_mm.begin() + static_cast<long>(standing), log.displacement_mm.end()));
+    is_wrong = extent && extent->lowest <= first_mm && first_mm <= extent->highest;
+  }
+  if (!is_wrong) return {};
+  return found;
+}
+
+}  // namespace softgrip::sysid
