@@ -64,19 +64,84 @@ Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::M
   return few * gradients * gradients.transpose();
 }
 
-/// Returns the covariance of the parameters in units of their steps. A parameter that has no effect on the
-/// readings has zero derivatives and does not contribute.
-Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
-                              const Eigen::VectorXd& white) {
+/// Returns the factorised curvature of the sum of squares. A parameter that has no effect on the readings has
+/// zero derivatives and does not contribute.
+Eigen::LDLT<Eigen::MatrixXd> curvature_of(const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd curvature = slopes.transpose() * slopes;
   curvature.diagonal().array() += 1e-12 * (1 + curvature.trace());
-  const Eigen::LDLT<Eigen::MatrixXd> solver(curvature);
+  return Eigen::LDLT<Eigen::MatrixXd>(curvature);
+}
+
+/// Returns the covariance of the parameters in units of their steps.
+Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
+                              const Eigen::VectorXd& white) {
+  const Eigen::LDLT<Eigen::MatrixXd> solver = curvature_of(slopes);
   return solver.solve(solver.solve(spread_of_gradient(readings, slopes, white)).transpose());
 }
 
-std::optional<Interval> interval(double value, double variance) {
+/// Deviation of the parameters in a healthy unit, which was left out of the fit, in units of their steps. In
+/// the unit, nothing has changed, so the deviation is an error of the baseline model or a difference between
+/// runs. One linear step from the values that were found in the later readings gives the deviation. The step
+/// has no bounds and no penalty, so small deviations of either sign count.
+struct Deviation {
+  Eigen::VectorXd steps;
+  Eigen::MatrixXd covariance;  ///< of `steps`, if the whitened readings of the unit contain only noise
+};
+
+Deviation deviation_in(const LaterReadings& unit, const std::vector<FittedEffect>& found,
+                       const std::vector<Place>& places) {
+  const Eigen::MatrixXd slopes = slopes_of(unit, found, places, unit.white_and_gain(found));
+  const Eigen::VectorXd white = unit.white_and_gain({});
+  const Eigen::LDLT<Eigen::MatrixXd> solver = curvature_of(slopes);
+  return {solver.solve(slopes.transpose() * white),
+          solver.solve(Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols()))};
+}
+
+/// A variance with its number of degrees of freedom.
+struct Variance {
+  double value = 0, freedom = 1;
+};
+
+/// Returns the variance of the difference between the mean of the later runs and the mean of the n healthy
+/// units, because of the differences between runs. The variance between runs is the mean square of the
+/// deviations, weighted with their accuracy. A unit is predicted from the n - 1 other units, so its mean
+/// square is larger by n / (n - 1) than the variance between runs. The noise within the units is not
+/// subtracted, because the later runs are also predicted from healthy runs with noise. Runs differ in
+/// limits::run_directions quantities, so each unit after the first has this number of degrees of freedom, as
+/// in the detection of a change.
+/// @param slopes  derivatives of the quantity with respect to the steps of the parameters.
+Variance between_runs(const std::vector<Deviation>& deviations, const Eigen::VectorXd& slopes,
+                      std::size_t later_runs) {
+  double squares = 0, weights = 0;
+  for (const Deviation& each : deviations) {
+    const double noise = slopes.dot(each.covariance * slopes);
+    if (!(noise > 0) || !std::isfinite(noise)) continue;
+    squares += square(slopes.dot(each.steps)) / noise;
+    weights += 1 / noise;
+  }
+  const auto n = static_cast<double>(deviations.size());
+  if (!(weights > 0) || n < 2) return {};
+  const double between = squares / weights * (n - 1) / n;
+  return {between * (1 / static_cast<double>(later_runs) + 1 / n), limits::run_directions * (n - 1)};
+}
+
+/// Returns the part of the variance of a gain change that covariance_of() lacks. The later readings contain
+/// the spread of the gain between runs as a penalty; the mean gain of the healthy runs has the same spread.
+Variance of_healthy_gain(const Base& base) {
+  const auto runs = static_cast<double>(base.records.size());
+  return {square(base.gain_spread) / runs, runs - 1 + limits::usual_gain_runs};
+}
+
+/// Returns the interval of a value with two variances (Student's t). The number of degrees of freedom follows
+/// from Welch (Biometrika 34, 1947); the first variance counts as known.
+std::optional<Interval> interval(double value, double within, const Variance& between) {
+  const double variance = within + between.value;
   if (!std::isfinite(variance) || !(variance > 0)) return std::nullopt;
-  const double half = limits::deviate * std::sqrt(variance);
+  double quantile = limits::deviate;
+  if (between.value > 0)
+    quantile =
+        std::sqrt(f_quantile(limits::probability, 1, square(variance / between.value) * between.freedom));
+  const double half = quantile * std::sqrt(variance);
   return Interval{value - half, value + half};
 }
 
@@ -88,49 +153,21 @@ std::optional<Interval> within(const EffectNumber& number, std::optional<Interva
   return interval;
 }
 
-/// Returns the fit of this form of the effect in a healthy cross-validation unit. Returns nullptr if the form
-/// does not reduce the error of the unit.
-const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effect) {
-  for (const ScoredEffect& each : unit.ranked) {
-    const FittedEffect& fitted = each.fit.fitted;
-    if (fitted.effect.id == effect.effect.id && fitted.effect.form == effect.effect.form && each.gain > 0)
-      return &fitted;
-  }
-  return nullptr;
-}
-
-/// Returns the variance between runs of a quantity that depends on the fitted form. It is the mean square
-/// over the n healthy units, multiplied by 1 + 1/n. The factor is necessary because a further run is compared
-/// with the mean of the healthy units.
-/// @param value_of  function that computes the quantity.
-template <class ValueOf>
-double between_runs(const std::vector<HealthyFits>& healthy, const FittedEffect& effect, ValueOf value_of) {
-  const auto units = static_cast<double>(healthy.size());
-  double sum = 0;
-  for (const HealthyFits& unit : healthy) {
-    if (const FittedEffect* const fitted = same_form(unit, effect)) sum += square(value_of(unit, *fitted));
-  }
-  return healthy.empty() ? 0 : sum / units * (1 + 1 / units);
-}
-
-double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEffect& effect,
-                        std::size_t number) {
-  const double nothing = effect.effect.nothing[number];
-  if (!std::isfinite(nothing)) return 0;
-  return between_runs(healthy, effect, [&](const HealthyFits&, const FittedEffect& fitted) {
-    return fitted.numbers[number] - nothing;
-  });
-}
-
 /// Returns the size of the effect with the current values of its parameters.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }
 
-double healthy_size_variance(const std::vector<HealthyFits>& healthy, const FittedEffect& effect) {
-  return between_runs(healthy, effect, [](const HealthyFits& unit, const FittedEffect& fitted) {
-    return size_with(unit.readings, fitted);
-  });
+/// The readings of the later runs may have another zero than the healthy runs. The zero can be an offset of
+/// the sensor or a displacement of the finger. The limits of the readings have the second meaning in one case
+/// and the first in the other, so their intervals contain both.
+bool is_position(const EffectNumber& number) {
+  return number.name == "position_mm" || number.name == "upper_mm" || number.name == "lower_mm";
+}
+
+std::optional<Interval> with_zero(std::optional<Interval> interval, double zero_mm) {
+  if (interval) (zero_mm > 0 ? interval->upper : interval->lower) += zero_mm;
+  return interval;
 }
 
 }  // namespace
@@ -142,9 +179,14 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
   const Eigen::VectorXd white = readings.white_and_gain(found);
   const Eigen::MatrixXd slopes = slopes_of(readings, found, places, white);
   const Eigen::MatrixXd covariance = covariance_of(readings, slopes, white);
+  std::vector<Deviation> deviations;
+  for (const HealthyFits& unit : healthy) deviations.push_back(deviation_in(unit.readings, found, places));
+  const std::size_t runs = readings.records().size();
+  const double zero_mm = readings.nuisance(found).zero_mm;
   std::vector<EffectIntervals> all(found.size());
   for (std::size_t e = 0; e < found.size(); ++e) {
     const FittedEffect& effect = found[e];
+    const bool is_gain = is_sized_by_both_gains(effect);
     const double size = size_with(readings, effect);
     Eigen::VectorXd size_slopes = Eigen::VectorXd::Zero(covariance.rows());
     for (std::size_t c = 0; c < places.size(); ++c) {
@@ -152,19 +194,26 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
       if (place.effect != e) continue;
       const auto i = static_cast<Eigen::Index>(c);
       const bool felt = slopes.col(i).squaredNorm() > 0;
-      const double variance =
-          felt ? covariance(i, i) * square(place.by) + healthy_variance(healthy, effect, place.number) : 0;
-      all[e].numbers.push_back(
-          within(effect.effect.numbers[place.number], interval(effect.numbers[place.number], variance)));
+      const EffectNumber& number = effect.effect.numbers[place.number];
+      std::optional<Interval> own;
+      if (felt) {
+        const Eigen::VectorXd step = place.by * Eigen::VectorXd::Unit(covariance.rows(), i);
+        own = interval(effect.numbers[place.number], step.dot(covariance * step),
+                       is_gain ? of_healthy_gain(readings.base()) : between_runs(deviations, step, runs));
+      }
+      all[e].numbers.push_back(within(number, is_position(number) ? with_zero(own, zero_mm) : own));
       // A step of the gain of the effect changes the gain within the spread by the opposite amount. The sum
       // of both would seem to be known exactly.
       if (felt)
-        size_slopes(i) = is_sized_by_both_gains(effect) ? 100 * place.by
-                                                        : size_with(readings, moved(found, place)[e]) - size;
+        size_slopes(i) = is_gain ? 100 * place.by : size_with(readings, moved(found, place)[e]) - size;
     }
     const double size_variance = size_slopes.dot(covariance * size_slopes);
-    if (size_variance > 0)
-      all[e].size = interval(size, size_variance + healthy_size_variance(healthy, effect));
+    Variance between = between_runs(deviations, size_slopes, runs);
+    if (is_gain) {
+      between = of_healthy_gain(readings.base());
+      between.value *= square(100.0);
+    }
+    if (size_variance > 0) all[e].size = interval(size, size_variance, between);
   }
   return all;
 }

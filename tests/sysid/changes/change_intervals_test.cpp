@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.h"
 #include "sysid/changes/change_search.h"
 #include "tests/sysid/changes/pressure_base.h"
 
@@ -56,23 +57,34 @@ TEST_F(ChangeIntervals, CoverTheTrueDelayAndMatchTheEstimateScatter) {
 TEST_F(ChangeIntervals, WidenByTheVariationBetweenHealthyRuns) {
   const LaterReadings later = readings({.delay_s = 0.06}, 5);
   const FittedEffect delay = fitted(later, "transport_delay");
-  const auto unit = [&](double delay_s, double gain) {
-    ScoredEffect scored;
-    scored.gain = gain;
-    scored.fit.fitted = delay;
-    scored.fit.fitted.numbers = {delay_s};
-    return HealthyFits{readings({}, 9), {scored}};
+  // The size of a delay is the delay. Its interval, unlike the interval of the parameter, has no limits.
+  const auto unit = [&](double delay_s) { return HealthyFits{readings({.delay_s = delay_s}, 9), {}}; };
+  const double alone = width(intervals_of(later, {delay}, {})[0].size);
+  const double between = width(intervals_of(later, {delay}, {unit(0.02), unit(0.04)})[0].size);
+  // The mean square of the two healthy delays is 0.001 s^2. Each of the two units is predicted from the other
+  // one, so half of the mean square is the variance between runs.
+  const auto later_runs = static_cast<double>(later.records().size());
+  const double added = 0.001 / 2 * (1 / later_runs + 0.5);
+  const double variance = std::pow(alone / (2 * 1.96), 2) + added;
+  const double quantile = std::sqrt(f_quantile(0.95, 1, 3 * std::pow(variance / added, 2)));
+  EXPECT_NEAR(between, 2 * quantile * std::sqrt(variance), 0.2 * between) << "a deviation is one linear step";
+  const double equal = width(intervals_of(later, {delay}, {unit(0), unit(0), unit(0)})[0].size);
+  EXPECT_GT(equal, alone) << "the healthy runs have noise";
+  EXPECT_LT(equal, 0.2 * between) << "the healthy runs do not differ";
+}
+
+TEST_F(ChangeIntervals, DeviationsOfEitherSignWidenTheInterval) {
+  const LaterReadings later = readings({.delay_s = 0.06}, 5);
+  const FittedEffect delay = fitted(later, "transport_delay");
+  const Base early = fit_base(pressure_records(test::logs_of({.delay_s = 0.04}, 1, true), false),
+                              Judged::pressure, Drive::command, {});
+  const std::vector<Record> records = pressure_records(test::logs_of({}, 9, true), false);
+  const LaterReadings sooner = readings_of(early, records, residuals_of(early, records));
+  const auto with = [&](const LaterReadings& unit) {
+    return width(intervals_of(later, {delay}, {{unit, {}}, {unit, {}}})[0].size);
   };
-  const double alone = width(intervals_of(later, {delay}, {})[0].numbers.at(0));
-  const double between = width(intervals_of(later, {delay}, {unit(0.01, 1), unit(0.02, 1)})[0].numbers.at(0));
-  // The delays of the two healthy runs are 0.01 s and 0.02 s. Their mean square is 0.00025 s^2. The variance
-  // of the difference between one run and the mean of two runs is 1.5 times this mean square.
-  const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
-  EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
-  // In this healthy run, the delay does not reduce the error. The run then gives no information about the
-  // variation of the delay between runs. The interval must therefore have the width that the later readings
-  // alone lead to.
-  EXPECT_DOUBLE_EQ(width(intervals_of(later, {delay}, {unit(0.04, -0.1)})[0].numbers.at(0)), alone);
+  EXPECT_NEAR(with(sooner), with(readings({.delay_s = 0.04}, 9)), 0.2 * with(sooner))
+      << "a pressure that is 0.04 s earlier counts as much as one that is 0.04 s later";
 }
 
 TEST_F(ChangeIntervals, SizeIntervalEqualsTheParameterInterval) {
