@@ -300,11 +300,15 @@ std::string scale_warning(const std::string& log_name, const std::vector<double>
                           const std::vector<double>& reading_mm, model::OutputUnit unit) {
   const PairSums sums = sums_of(prediction_mm, reading_mm);
   if (sums.correlation() < clear_correlation) return {};
+  // Fingers of one design differ less than this.
+  constexpr double implausible = 3;
   const double factor = sums.slope();
+  const std::string found =
+      log_name + ": the readings are " + significant(factor, 3) + " times the prediction of the model. ";
   const std::string mistake = mistaken_unit(factor, unit);
-  if (mistake.empty()) return {};
-  return log_name + ": the readings are " + significant(factor, 3) +
-         " times the prediction of the model. Possible cause: " + mistake + "?";
+  if (!mistake.empty()) return found + "Possible cause: " + mistake + "?";
+  if (std::abs(std::log(std::abs(factor))) < std::log(implausible)) return {};
+  return found + "Check if the log and the model belong to the same finger, and check the units";
 }
 
 }  // namespace softgrip::sysid

@@ -47,8 +47,8 @@ inline constexpr std::string_view repeated_in_fit =
                                                            const std::string& kind,
                                                            std::string_view repeated);
 
-/// Returns a sentence if the readings and the predictions of a model differ by the ratio of two units,
-/// otherwise "". NaN is a missing reading.
+/// Returns a sentence if the readings and the predictions of a model differ by the ratio of two units, or by
+/// more than a factor of 3; otherwise "". NaN is a missing reading.
 [[nodiscard]] std::string scale_warning(const std::string& log_name, const std::vector<double>& prediction_mm,
                                         const std::vector<double>& reading_mm, model::OutputUnit unit);
 

@@ -195,6 +195,12 @@ TEST(PlausibilityWarnings, ReadingsScaledAgainstTheModelAreReported) {
   EXPECT_NE(scale_warning("x", predicted, log.displacement_mm, log.output_unit)
                 .find("x: the readings are 6.5 times"),
             std::string::npos);
+  for (const double factor : {2.0, 57.3, -1.5}) {
+    std::vector<double> scaled = log.displacement_mm;
+    for (double& y : scaled) y /= factor;
+    const std::string sentence = scale_warning("x", scaled, log.displacement_mm, log.output_unit);
+    EXPECT_EQ(sentence.find("belong to the same finger") != std::string::npos, factor > 3) << sentence;
+  }
 }
 
 }  // namespace
