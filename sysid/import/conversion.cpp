@@ -58,23 +58,29 @@ class Converter {
                    problem.hint});
   }
 
-  [[nodiscard]] std::vector<double> missing_codes() const {
-    std::vector<double> codes;
+  /// Returns the codes for missing values of each column of the table.
+  [[nodiscard]] std::vector<std::vector<double>> missing_codes() const {
+    std::vector<double> of_all;
     for (const std::string& word : mapping_.missing) {
-      if (const auto number = missing_number(word)) codes.push_back(*number);
+      if (const auto number = missing_number(word)) of_all.push_back(*number);
+    }
+    std::vector<std::vector<double>> codes(table_.columns.size(), of_all);
+    for (const ColumnCode& code : mapping_.missing_in) {
+      const std::size_t column = column_index(table_, code.column);
+      if (column < codes.size()) codes[column].push_back(code.value);
     }
     return codes;
   }
 
-  [[nodiscard]] bool is_missing(double value) const {
-    return std::find(missing_.begin(), missing_.end(), value) != missing_.end();
+  [[nodiscard]] bool is_missing(std::size_t column, double value) const {
+    return std::find(missing_[column].begin(), missing_[column].end(), value) != missing_[column].end();
   }
 
   [[nodiscard]] double value_at(const RoleSource& source, std::size_t row) const {
     double sum = 0;
     for (const std::size_t column : source.columns) {
       const double value = table_.columns[column].values[row];
-      sum += is_missing(value) ? std::nan("") : value;
+      sum += is_missing(column, value) ? std::nan("") : value;
     }
     return source.factor * (sum / static_cast<double>(source.columns.size())) + source.offset;
   }
@@ -296,7 +302,7 @@ class Converter {
   const Mapping& mapping_;
   document::Problems& problems_;
   RoleSources sources_;
-  std::vector<double> missing_ = missing_codes();
+  std::vector<std::vector<double>> missing_ = missing_codes();
   ImportRemarks remarks_;
   double clocks_begin_s_ = -std::numeric_limits<double>::infinity();
   double clocks_end_s_ = std::numeric_limits<double>::infinity();

@@ -1,6 +1,8 @@
 #include "sysid/import/mapping.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/files.h"
@@ -44,6 +46,22 @@ std::string column_yaml(const ColumnMapping& column) {
   return text + "}";
 }
 
+/// Returns one line for each column that has codes for missing values.
+std::string codes_yaml(const std::vector<ColumnCode>& codes) {
+  std::string text = codes.empty() ? "" : "missing_in:\n";
+  for (auto code = codes.begin(); code != codes.end(); ++code) {
+    const auto same_column = [&](const ColumnCode& other) { return other.column == code->column; };
+    if (std::find_if(codes.begin(), code, same_column) != code) continue;
+    std::vector<double> values;
+    for (const ColumnCode& other : codes) {
+      if (same_column(other)) values.push_back(other.value);
+    }
+    text += "  - {column: " + in_quotes(code->column) + ", values: [" +
+            with_commas(values, [](double value) { return shortest(value); }) + "]}\n";
+  }
+  return text;
+}
+
 /// Returns `text` as a YAML comment on one line; line breaks are replaced.
 std::string comment(std::string_view text) {
   return "# " + document::shown(text, 400) + "\n";
@@ -74,6 +92,7 @@ class MappingReader {
                    "write comma, semicolon, tab, space or bar");
     }
     for (const document::Node* item : map.sequence("missing", false)) mapping.missing.push_back(item->scalar);
+    for (const document::Node* item : map.sequence("missing_in", false)) codes(*item, mapping.missing_in);
     map.finish();
     if (problems_.empty() && !mapping.complete())
       problems_.add(document_.problem({1, 1}, "the mapping is incomplete",
@@ -82,6 +101,17 @@ class MappingReader {
   }
 
  private:
+  void codes(const document::Node& node, std::vector<ColumnCode>& codes) {
+    document::MapReader map(document_, node, problems_, "missing_in");
+    const std::string column = map.text("column");
+    constexpr double largest = std::numeric_limits<double>::max();
+    for (const document::Node* item : map.sequence("values", true))
+      codes.push_back(
+          {column,
+           document::number_in(document_, *item, {-largest, largest}, problems_, "values").value_or(0)});
+    map.finish();
+  }
+
   void column(const document::Node& node, const RoleSpec& spec, ColumnMapping& column) {
     document::MapReader map(document_, node, problems_, std::string(spec.word));
     for (const document::Node* item : map.sequence("columns", true)) {
@@ -137,6 +167,8 @@ std::string options_of(const Mapping& mapping) {
   if (mapping.rate_hz) say("rate-hz", shortest(*mapping.rate_hz));
   if (mapping.separator != 0) say("separator", word_of_separator(mapping.separator));
   for (const std::string& word : mapping.missing) say("missing", word);
+  for (const ColumnCode& code : mapping.missing_in)
+    say("missing-in", code.column + "=" + shortest(code.value));
   if (!mapping.channel.empty()) say("channel", mapping.channel);
   if (!mapping.sheet.empty()) say("sheet", mapping.sheet);
   if (mapping.skip_bad_lines) text += text.empty() ? "--skip-bad-lines" : " --skip-bad-lines";
@@ -176,6 +208,7 @@ std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, con
   if (mapping.separator != 0)
     text += "separator: " + std::string(word_of_separator(mapping.separator)) + "\n";
   if (!mapping.missing.empty()) text += "missing: " + list_of(mapping.missing) + "\n";
+  text += codes_yaml(mapping.missing_in);
   if (!mapping.channel.empty()) text += "channel: " + in_quotes(mapping.channel) + "\n";
   if (!mapping.sheet.empty()) text += "sheet: " + in_quotes(mapping.sheet) + "\n";
   if (mapping.skip_bad_lines) text += "skip_bad_lines: true\n";

@@ -72,11 +72,22 @@ struct ColumnMapping {
   bool operator==(const ColumnMapping&) const = default;
 };
 
+/// A number that means a missing value in one column, such as 999.
+struct ColumnCode {
+  std::string column;  ///< name of the column, or its number counted from 1
+  double value = 0;    ///< number in the unit of the column
+
+  bool operator==(const ColumnCode&) const = default;
+};
+
 struct Mapping {
   std::array<ColumnMapping, role_count> columns;
   std::optional<double> rate_hz;  ///< sampling rate; used if no column has the role time
   char separator = 0;             ///< character between the columns; 0: detected automatically
+  /// Words and numbers that mean a missing value in every column.
   std::vector<std::string> missing;
+  /// Numbers that mean a missing value in one column only. In another column, the same number is a value.
+  std::vector<ColumnCode> missing_in;
   std::string channel;
   std::string sheet;            ///< name of the sheet of a workbook
   bool skip_bad_lines = false;  ///< true: lines that cannot be read are left out and counted

@@ -16,10 +16,20 @@
 namespace softgrip::sysid {
 namespace {
 
+bool supplies(const ColumnMapping& column, const ForeignTable& table, std::size_t index) {
+  return std::any_of(column.columns.begin(), column.columns.end(),
+                     [&](const std::string& word) { return column_index(table, word) == index; });
+}
+
 bool taken(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
-  return std::any_of(mapping.columns.begin(), mapping.columns.end(), [&](const ColumnMapping& column) {
-    return std::any_of(column.columns.begin(), column.columns.end(),
-                       [&](const std::string& word) { return column_index(table, word) == index; });
+  return std::any_of(mapping.columns.begin(), mapping.columns.end(),
+                     [&](const ColumnMapping& column) { return supplies(column, table, index); });
+}
+
+/// Returns true if a role other than the time uses the column.
+bool taken_by_a_value(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
+  return std::any_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
+    return spec.role != Role::time && supplies(mapping[spec.role], table, index);
   });
 }
 
@@ -157,25 +167,32 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   }
 }
 
-/// Interprets codes such as 999 in the mapped columns as missing values.
-void choose_codes(const ForeignTable& table, Proposal& proposal) {
-  if (!proposal.mapping.missing.empty()) return;
-  for (const RoleSpec& spec : roles) {
-    if (spec.role == Role::time) continue;
-    for (const std::string& word : proposal.mapping[spec.role].columns) {
-      const std::size_t index = column_index(table, word);
-      if (index == table.columns.size()) continue;
-      const TableColumn& column = table.columns[index];
-      for (const double code : sensor_codes(column.values)) {
-        const auto count = std::count(column.values.begin(), column.values.end(), code);
-        const std::string value = shortest(code);
-        std::vector<std::string>& missing = proposal.mapping.missing;
-        if (std::find(missing.begin(), missing.end(), value) == missing.end()) missing.push_back(value);
-        proposal.warnings.push_back(std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
-                                    document::shown(column.name, 40) + "' with " + value +
-                                    ", far from all other values, count as missing; to keep these values as "
-                                    "readings, use --missing NA");
-      }
+std::string cells_with(const TableColumn& column, double code) {
+  const auto count = std::count(column.values.begin(), column.values.end(), code);
+  return std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
+         document::shown(column.name, 40) + "' with " + shortest(code);
+}
+
+/// Interprets codes such as 999 in the mapped columns as missing values. A code applies only to the column in
+/// which it was found, because the same number can be a value of another column. Columns for which the user
+/// states codes are not searched.
+void choose_codes(const ForeignTable& table, const Mapping& given, Proposal& proposal) {
+  const auto column_of = [&](const ColumnCode& code) { return column_index(table, code.column); };
+  for (const ColumnCode& code : given.missing_in) {
+    const std::size_t index = column_of(code);
+    if (index < table.columns.size() && taken(proposal.mapping, table, index))
+      proposal.notes.push_back(cells_with(table.columns[index], code.value) + " count as missing");
+  }
+  if (!given.missing.empty()) return;
+  for (std::size_t index = 0; index < table.columns.size(); ++index) {
+    const TableColumn& column = table.columns[index];
+    const bool is_stated = std::ranges::count(given.missing_in, index, column_of) > 0;
+    if (is_stated || !taken_by_a_value(proposal.mapping, table, index)) continue;
+    for (const double code : sensor_codes(column.values)) {
+      proposal.mapping.missing_in.push_back({word_of(table, index), code});
+      proposal.warnings.push_back(cells_with(column, code) +
+                                  ", far from all other values, count as missing; to keep these values as "
+                                  "readings, use --missing NA");
     }
   }
 }
@@ -303,7 +320,7 @@ std::string unit_text(const ForeignTable& table, const ColumnMapping& column, Qu
 }
 
 Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too) {
-  Proposal proposal{given, {}, {}, {}, {}};
+  Proposal proposal{given, {}, {}, {}, {}, {}};
   const FingerChoice choice = choose_finger(table, given, proposal);
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
   // Assign the command before the measured pressure. In the opposite order, the column of the command could
@@ -317,7 +334,7 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
       choose(table, spec_of(role), choice, proposal);
   }
   if (!given[Role::time].given()) choose_times(table, choice, proposal);
-  choose_codes(table, proposal);
+  choose_codes(table, given, proposal);
   ColumnMapping& time = proposal.mapping[Role::time];
   if (time.columns.size() == 1 && time.unit.empty() && !time.scale &&
       unit_text(table, time, Quantity::time).empty()) {

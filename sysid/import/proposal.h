@@ -24,6 +24,8 @@ struct Proposal {
     std::string hint;
   };
   std::vector<Question> questions;
+  /// Notes on the numbers of values that count as missing because the given mapping states their codes.
+  std::vector<std::string> notes;
   /// Warnings about values that were interpreted as codes for missing values, and about the choice of the
   /// displacement among several columns.
   std::vector<std::string> warnings;

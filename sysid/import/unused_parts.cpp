@@ -152,21 +152,51 @@ class UnusedParts {
       idle("--from-s or --to-s", "all samples are between these two times");
   }
 
+  /// Returns the number of cells that contain a code for a missing value, as text with the name of the
+  /// column. Returns "" if no cell contains the code.
+  [[nodiscard]] std::string cells_of(const TableColumn& column, double code) const {
+    const auto cells = std::count(column.values.begin(), column.values.end(), code);
+    if (cells == 0) return {};
+    return std::to_string(cells) + (cells == 1 ? " cell" : " cells") + " of '" +
+           document::shown(column.name, 40) + "'";
+  }
+
+  /// Returns true if a role other than the time uses the column.
+  [[nodiscard]] bool supplies_values(std::size_t column) const {
+    return std::any_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
+      const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(spec.role)];
+      return spec.role != Role::time && std::ranges::count(source.columns, column) > 0;
+    });
+  }
+
+  /// Names the columns in which a number of --missing occurs, and the words of --missing that do not occur.
   void name_idle_words() {
     std::size_t text_word = 0;
     for (const std::string& word : mapping_.missing) {
-      std::size_t cells = 0;
+      bool occurs = false;
       if (const auto number = missing_number(word)) {
+        std::vector<std::string> found;
         for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-          const std::vector<double>& values = table_.columns[i].values;
-          if (sources_.uses(i))
-            cells += static_cast<std::size_t>(std::count(values.begin(), values.end(), *number));
+          const std::string cells = supplies_values(i) ? cells_of(table_.columns[i], *number) : "";
+          if (!cells.empty()) found.push_back(cells);
         }
+        occurs = !found.empty();
+        if (occurs)
+          remarks_.notes.push_back("--missing " + word + " applies to " +
+                                   with_commas(found, [](const std::string& cells) { return cells; }));
       } else if (text_word < table_.missing_cells.size()) {
-        cells = table_.missing_cells[text_word++];
+        occurs = table_.missing_cells[text_word++] > 0;
       }
-      if (cells == 0)
+      if (!occurs)
         idle("--missing " + document::shown(word, 40), "no cell of the used columns contains this text");
+    }
+    for (const ColumnCode& code : mapping_.missing_in) {
+      const std::size_t column = column_index(table_, code.column);
+      const bool is_used = column < table_.columns.size() && supplies_values(column);
+      if (!is_used || cells_of(table_.columns[column], code.value).empty())
+        idle("--missing-in " + document::shown(code.column, 40) + "=" + shortest(code.value),
+             is_used ? "no cell of this column contains this number"
+                     : "the import uses no values of such a column");
     }
   }
 

@@ -53,6 +53,11 @@ void add_import(CLI::App& program, ExitCode& outcome) {
                    "Value or text that stands for a missing reading (example: -999), in addition to NaN and "
                    "similar texts")
       ->allow_extra_args(false);
+  command
+      ->add_option("--missing-in", options->missing_in,
+                   "COLUMN=NUMBER: number that stands for a missing reading in one column only (example: "
+                   "tip_mm=999)")
+      ->allow_extra_args(false);
   command->add_option("--separator", options->separator, "comma, semicolon, tab, space or bar [detected]");
   command->add_option("--channel", options->channel, "Import only the rows or columns of this channel");
   command->add_option("--sheet", options->sheet,

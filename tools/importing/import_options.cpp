@@ -57,6 +57,19 @@ bool take_zero(sysid::ColumnMapping& column, const std::string& text) {
   return true;
 }
 
+/// Returns the codes that --missing-in states as COLUMN=NUMBER. The name of a column may contain '='.
+tl::expected<std::vector<sysid::ColumnCode>, std::string> codes_of(const std::vector<std::string>& words) {
+  std::vector<sysid::ColumnCode> codes;
+  for (const std::string& word : words) {
+    const std::size_t equals = word.rfind('=');
+    const auto value = equals == std::string::npos ? std::nullopt : to_number(word.substr(equals + 1));
+    if (!value || !std::isfinite(*value) || equals == 0)
+      return tl::unexpected("--missing-in " + word + ": COLUMN=NUMBER is expected, for example tip_mm=999");
+    codes.push_back({word.substr(0, equals), *value});
+  }
+  return codes;
+}
+
 /// Returns the name of the log that is imported from a file or folder: day1.csv for "day1.csv.gz" and for the
 /// folder "day1".
 std::string log_name(const std::string& file) {
@@ -142,7 +155,13 @@ tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& option
   if (mapping.rate_hz && mapping[sysid::Role::time].given())
     return tl::unexpected(std::string(
         "--time and --rate-hz cannot be given together, because a file with a time column needs no rate"));
-  if (!options.missing.empty()) mapping.missing = options.missing;
+  const auto codes = codes_of(options.missing_in);
+  if (!codes) return tl::unexpected(codes.error());
+  if (!options.missing.empty()) {
+    mapping.missing = options.missing;
+    mapping.missing_in.clear();
+  }
+  if (!codes->empty()) mapping.missing_in = *codes;
   for (std::string& word : mapping.missing) word = sysid::lower_case(word);
   if (!options.separator.empty()) {
     mapping.separator = sysid::separator_named(options.separator);

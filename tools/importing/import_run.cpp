@@ -42,6 +42,7 @@ struct Job {
   std::vector<sysid::Role> guessed;
   bool is_log = false;  ///< true: the file is already a log, so it is copied
   sysid::ImportedLog result;
+  std::vector<std::string> notes;
   std::vector<std::string> warnings;
   std::vector<std::string> plausibility;
 };
@@ -72,8 +73,8 @@ bool says_columns(const sysid::Mapping& mapping) {
   for (const sysid::ColumnMapping& column : mapping.columns) {
     if (column != sysid::ColumnMapping{}) return true;
   }
-  return mapping.rate_hz.has_value() || !mapping.missing.empty() || mapping.separator != 0 ||
-         mapping.skip_bad_lines || !mapping.sheet.empty() || mapping.from_s > 0 ||
+  return mapping.rate_hz.has_value() || !mapping.missing.empty() || !mapping.missing_in.empty() ||
+         mapping.separator != 0 || mapping.skip_bad_lines || !mapping.sheet.empty() || mapping.from_s > 0 ||
          std::isfinite(mapping.to_s);
 }
 
@@ -111,6 +112,7 @@ bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems
   sysid::Proposal proposal = sysid::propose(job.table, given, !given.complete());
   job.mapping = std::move(proposal.mapping);
   job.guessed = std::move(proposal.guessed);
+  job.notes = std::move(proposal.notes);
   job.warnings = std::move(proposal.warnings);
   if (proposal.missing.empty() && proposal.questions.empty()) return true;
   std::fprintf(stderr, "%s: %s\n%s", job.file.c_str(), job.table.format.c_str(),
@@ -182,6 +184,7 @@ bool finish(Job& job, document::Problems& problems) {
 
 std::vector<std::string> notes_of(const Job& job) {
   std::vector<std::string> notes = job.table.notes;
+  notes.insert(notes.end(), job.notes.begin(), job.notes.end());
   notes.insert(notes.end(), job.result.notes.begin(), job.result.notes.end());
   for (const sysid::LogNote& note : job.result.log.notes) notes.push_back(note.text);
   return notes;

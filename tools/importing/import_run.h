@@ -23,6 +23,7 @@ struct ImportOptions {
   std::vector<std::string> zeros;   ///< zeros of columns by role, for example "displacement=first"
   std::optional<double> rate_hz;
   std::vector<std::string> missing;
+  std::vector<std::string> missing_in;  ///< codes of single columns, for example "tip (mm)=999"
   std::string separator;
   std::string channel;
   std::string sheet;

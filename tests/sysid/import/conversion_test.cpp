@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/samples.h"
 #include "sysid/import/table_readers.h"
@@ -279,6 +280,50 @@ TEST(Propose, KeepsGivenAssignments) {
   const Proposal proposal = propose(table, given, true);
   EXPECT_FALSE(proposal.mapping[Role::command].given());
   EXPECT_EQ(proposal.guessed, (std::vector<Role>{Role::time, Role::displacement}));
+}
+
+/// Returns a text in which the two displacements begin at 500 mm and at 0 mm. Both displacements and the
+/// command contain zeros, but only the zeros of the first displacement are codes.
+std::string with_dropouts() {
+  return text_of("t_s,p_cmd_kpa,x_mm,y_mm", [](int i, double p, double y) {
+    return shortest(0.01 * i) + "," + shortest(p) + "," + (i % 40 == 7 ? "0" : shortest(500 + y)) + "," +
+           shortest(y);
+  });
+}
+
+TEST(Convert, CodesForMissingValuesApplyToTheirColumnOnly) {
+  const ForeignTable table = table_of(with_dropouts());
+  Mapping given = mapping_of("t_s", "p_cmd_kpa", "x_mm");
+  given[Role::displacement].columns.emplace_back("y_mm");
+  const Proposal proposal = propose(table, given, true);
+  EXPECT_EQ(proposal.mapping.missing_in, (std::vector<ColumnCode>{{"x_mm", 0}}));
+  ASSERT_EQ(proposal.warnings.size(), 1U);
+  EXPECT_TRUE(proposal.warnings[0].starts_with("5 cells of 'x_mm' with 0, far from all other values"));
+  document::Problems problems;
+  const auto result = convert(table, proposal.mapping, problems);
+  ASSERT_TRUE(result) << problems.format();
+  const Log& log = result->log;
+  ASSERT_EQ(log.size(), 200U);
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    EXPECT_EQ(log.pressure_command_kpa[i], table.columns[1].values[i]) << i;
+    EXPECT_EQ(std::isnan(log.displacement_mm[i]), i % 40 == 7) << i;
+  }
+  const Proposal again = propose(table, proposal.mapping, true);
+  EXPECT_EQ(again.mapping, proposal.mapping) << "a stored mapping gives the same log";
+  EXPECT_EQ(again.notes, std::vector<std::string>{"5 cells of 'x_mm' with 0 count as missing"});
+}
+
+TEST(Convert, CodesOfTheUserApplyToAllColumnsAndAreReported) {
+  const ForeignTable table = table_of(with_dropouts());
+  Mapping mapping = mapping_of("t_s", "p_cmd_kpa", "x_mm");
+  mapping.missing = {"0"};
+  document::Problems problems;
+  const auto result = convert(table, propose(table, mapping, true).mapping, problems);
+  ASSERT_TRUE(result) << problems.format();
+  EXPECT_EQ(
+      std::ranges::count(result->notes, "--missing 0 applies to 2 cells of 'p_cmd_kpa', 5 cells of 'x_mm'"),
+      1)
+      << with_commas(result->notes, [](const std::string& note) { return note; });
 }
 
 /// Returns a text with the rows of two devices. The second device has 0.5 times the readings of the first.

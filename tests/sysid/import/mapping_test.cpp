@@ -12,6 +12,7 @@ Mapping full() {
   mapping[Role::displacement] = {{"3"}, "V", -2.5, {}, true};
   mapping.separator = '\t';
   mapping.missing = {"-999", "lost"};
+  mapping.missing_in = {{"p1", 999}, {"p1", -0.5}, {"a=\"b\"", 0}};
   mapping.channel = "left: 1";
   mapping.sheet = "Run \"1\"";
   mapping.skip_bad_lines = true;
@@ -28,6 +29,7 @@ TEST(MappingFile, WrittenMappingIsReadBackUnchanged) {
   ASSERT_TRUE(read) << problems.format() << text;
   EXPECT_EQ(*read, full());
   EXPECT_NE(text.find("# sha256: 0123\n"), std::string::npos);
+  EXPECT_NE(text.find("  - {column: \"p1\", values: [999, -0.5]}\n"), std::string::npos) << text;
 }
 
 TEST(MappingFile, ErrorsStateTheLocation) {
@@ -47,6 +49,9 @@ TEST(MappingFile, ErrorsStateTheLocation) {
   EXPECT_NE(refused(good + "displacment: {columns: [b]}\n").find("m.yaml:4:1"), std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [], scale: 0}\n").find("m.yaml:4:"), std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [b], zero: last}\n").find("m.yaml:4:"),
+            std::string::npos);
+  EXPECT_NE(refused(good + "displacement: {columns: [b]}\nmissing_in: [{column: b, values: [x]}]\n")
+                .find("m.yaml:5:"),
             std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [b]}\nseparator: dots\n").find("separates no columns"),
             std::string::npos);

@@ -31,6 +31,27 @@ TEST(ImportOptions, OptionsOverrideTheExistingMapping) {
   EXPECT_EQ(mapping->missing, std::vector<std::string>{"lost"});
 }
 
+TEST(ImportOptions, CodesOfOneColumnEndWithANumber) {
+  sysid::Mapping begun;
+  begun.missing_in = {{"p", 999}};
+  ImportOptions options;
+  options.missing_in = {"a=b=-0.5"};
+  const auto stated = mapping_of(options, begun);
+  ASSERT_TRUE(stated) << stated.error();
+  EXPECT_EQ(stated->missing_in, (std::vector<sysid::ColumnCode>{{"a=b", -0.5}}));
+  options.missing_in = {};
+  options.missing = {"na"};
+  const auto kept = mapping_of(options, begun);
+  ASSERT_TRUE(kept) << kept.error();
+  EXPECT_TRUE(kept->missing_in.empty()) << "--missing overrides the codes that an earlier import found";
+  for (const char* word : {"tip_mm", "tip_mm=lost", "=999", "tip_mm=inf"}) {
+    options.missing_in = {word};
+    const auto wrong = mapping_of(options, {});
+    ASSERT_FALSE(wrong) << word;
+    EXPECT_NE(wrong.error().find("COLUMN=NUMBER is expected"), std::string::npos) << wrong.error();
+  }
+}
+
 TEST(ImportOptions, AnErrorDistinguishesRoleAndValue) {
   const auto error_of = [](const ImportOptions& options) {
     const auto mapping = mapping_of(options, {});
