@@ -131,8 +131,10 @@ class Converter {
     const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(Role::time)];
     if (!time.empty()) continue_clock(time, source.factor, rows);
     for (double& value : time) value = source.factor * value + source.offset;
-    for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i)
-      time.push_back(static_cast<double>(rows[i]) / *mapping_.rate_hz);
+    for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i) {
+      const std::size_t at = table_.position.empty() ? rows[i] : table_.position[rows[i]];
+      time.push_back(static_cast<double>(at) / *mapping_.rate_hz);
+    }
     return samples;
   }
 

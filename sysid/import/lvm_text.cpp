@@ -256,6 +256,7 @@ class LvmReader {
     }
     for (std::size_t i = 0; i < table_.columns.size(); ++i) add_cell(i, cells[i], number_of_line, counted_x);
     table_.line.push_back(static_cast<int>(number_of_line));
+    table_.position.push_back(table_.account.rows - 1);
   }
 
   void add_cell(std::size_t i, const std::string& text, std::size_t line, double counted_x) {

@@ -59,6 +59,7 @@ class RowReader {
     if (!belongs()) return table_.account.leave_out(LeftOut::other_channel);
     for (std::size_t i = 0; i < dialect_.width; ++i) read_cell(i, line);
     table_.line.push_back(line.number);
+    table_.position.push_back(position_++);
   }
 
   void finish() {
@@ -100,6 +101,7 @@ class RowReader {
     } else if (options_.skip_bad_lines) {
       table_.account.leave_out(LeftOut::bad_line);
       skipped_.push_back(line.number);
+      if (may_belong()) ++position_;
     } else {
       report_.add("row", {line.number, 1}, line.text,
                   closed ? std::to_string(cells_.size()) + " cells, but the rows above have " +
@@ -107,6 +109,12 @@ class RowReader {
                          : std::string("a quotation mark is not closed"),
                   "to leave out and count such lines, use --skip-bad-lines");
     }
+  }
+
+  /// Returns true if a line with a wrong number of cells can belong to the selected finger.
+  [[nodiscard]] bool may_belong() const {
+    return channel_ == dialect_.width || options_.channel.empty() || channel_ >= cells_.size() ||
+           cell_text(cells_[channel_].text) == options_.channel;
   }
 
   bool belongs() {
@@ -186,6 +194,7 @@ class RowReader {
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;
+  std::size_t position_ = 0;  ///< ForeignTable::position of the next row
 };
 
 }  // namespace

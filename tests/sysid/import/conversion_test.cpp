@@ -326,6 +326,47 @@ TEST(Convert, CodesOfTheUserApplyToAllColumnsAndAreReported) {
       << with_commas(result->notes, [](const std::string& note) { return note; });
 }
 
+TEST(Convert, RateCountsSkippedLines) {
+  const auto row = [](int i, double p, double y) {
+    if (i >= 60 && i < 68) return shortest(p);
+    return shortest(p) + (i == 90 ? ",lost" : "," + shortest(y));
+  };
+  document::Problems problems;
+  TableOptions options;
+  options.skip_bad_lines = true;
+  const auto table = parse_text_table("t.csv", text_of("p_cmd_kpa,tip_mm", row), options, problems);
+  ASSERT_TRUE(table) << problems.format();
+  Mapping mapping = mapping_of("", "p_cmd_kpa", "tip_mm");
+  mapping[Role::time].columns.clear();
+  mapping.rate_hz = 100;
+  mapping.skip_bad_lines = true;
+  const auto result = convert(*table, mapping, problems);
+  ASSERT_TRUE(result) << problems.format();
+  const Log& log = result->log;
+  ASSERT_EQ(log.size(), 191U);
+  EXPECT_NEAR(log.time_s[59], 0.59, 1e-9);
+  EXPECT_NEAR(log.time_s[60], 0.68, 1e-9) << "8 lines with too few cells were skipped";
+  EXPECT_NEAR(log.time_s.back(), 1.99, 1e-9);
+}
+
+TEST(Convert, RateCountsSkippedLinesOfTheSelectedFingerOnly) {
+  const auto row = [](int i, double p, double y) {
+    const std::string left = "left," + shortest(p), right = "right," + shortest(p);
+    const std::string reading = "," + shortest(y);
+    return left + (i == 40 ? "" : reading) + "\n" + right + (i < 20 ? "" : reading);
+  };
+  document::Problems problems;
+  TableOptions options;
+  options.skip_bad_lines = true;
+  options.channel = "left";
+  const auto table = parse_text_table("t.csv", text_of("channel,p_cmd_kpa,tip_mm", row), options, problems);
+  ASSERT_TRUE(table) << problems.format();
+  ASSERT_EQ(table->position.size(), 199U);
+  EXPECT_EQ(table->position[39], 39U);
+  EXPECT_EQ(table->position[40], 41U);
+  EXPECT_EQ(table->position.back(), 199U);
+}
+
 /// Returns a text with the rows of two devices. The second device has 0.5 times the readings of the first.
 std::string devices(const std::string& column, bool in_turn, double delay_s = 0) {
   std::array<std::string, 2> blocks;
