@@ -8,6 +8,7 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "sysid/logs/command_range.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -88,10 +89,9 @@ std::optional<double> by_displacement(const Log& log, double least_kpa, double m
 
 std::optional<double> pressure_before_kpa(const Log& log) {
   if (log.size() < 2) return {};
-  const auto [least, most] =
-      std::minmax_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end());
-  if (log.pressure_kpa.empty()) return by_displacement(log, *least, *most);
-  return by_pressure(log, *least, *most);
+  const CommandRange range = command_range(log.pressure_command_kpa);
+  if (log.pressure_kpa.empty()) return by_displacement(log, range.lowest_kpa, range.highest_kpa);
+  return by_pressure(log, range.lowest_kpa, range.highest_kpa);
 }
 
 Log with_command_before(const Log& log, double before_kpa) {

@@ -11,6 +11,7 @@ namespace softgrip::sysid {
 
 /// Returns the command before the beginning of the log [kPa], or nullopt if the pressure was already at the
 /// first command. The first command counts as held although a single sample may have another command.
+/// A wrong command of a single sample (command_range.h) does not count as a command of the log.
 ///
 /// If the log contains a measured pressure, two conditions must be met. At the beginning, the pressure
 /// differs from the first command by more than 10 % of the range of the commands. While the first command is

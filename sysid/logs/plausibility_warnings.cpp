@@ -9,6 +9,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "model/port_flow.h"
+#include "sysid/logs/command_range.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
@@ -140,6 +141,27 @@ void check_response(const Log& log, ReadingSign sign, std::vector<std::string>& 
         " % of their bounding rectangle), so the columns of pressure and displacement may be swapped");
 }
 
+void check_single_commands(const Log& log, std::vector<std::string>& warnings) {
+  if (log.size() == 0) return;
+  const CommandRange range = command_range(log.pressure_command_kpa);
+  if (range.excursions.empty()) return;
+  constexpr std::size_t most_named = 3;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(most_named, range.excursions.size()); ++k) {
+    const std::size_t at = range.excursions[k];
+    list += (list.empty() ? "" : ", ") + significant(log.pressure_command_kpa[at]) + " kPa at " +
+            significant(log.time_s[at], 6) + " s";
+  }
+  const bool is_one = range.excursions.size() == 1;
+  warnings.push_back(std::to_string(range.excursions.size()) +
+                     (is_one ? " single sample has a command" : " single samples have commands") +
+                     " outside the range of all other samples (" + significant(range.lowest_kpa, 3) + " to " +
+                     significant(range.highest_kpa, 3) + " kPa): " + list +
+                     (range.excursions.size() > most_named ? ", ..." : "") +
+                     ". softgrip uses these values. If a value is wrong, use `softgrip import --missing-in "
+                     "COLUMN=X`, which replaces X by the previous command");
+}
+
 void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
   const auto result = std::find_if(log.others.begin(), log.others.end(),
                                    [](const OtherColumn& column) { return column.name == "result"; });
@@ -220,6 +242,7 @@ std::vector<std::string> plausibility_warnings(const Log& log, const PressureCol
                                                ReadingSign sign) {
   std::vector<std::string> warnings;
   check_response(log, sign, warnings);
+  check_single_commands(log, warnings);
   check_free_motion(log, warnings);
   check_measured_pressure(log, warnings);
   judge_unit_of_pressure(log, column, warnings);

@@ -21,9 +21,10 @@ enum class ReadingSign { kept, reversed };
 
 /// Returns sentences about implausible data. Each sentence contains a number as evidence, and a remedy. The
 /// sentences are about these findings: the reading decreases when the pressure increases; the reading
-/// precedes the pressure; the finger holds a part; command and measured pressure differ by the ratio of two
-/// units; the measured pressure precedes the command; the pressure is absolute; the range of the values is
-/// implausible for a soft finger; the sampling interval is too long or too short.
+/// precedes the pressure; a single sample has a command outside the range of all others; the finger holds a
+/// part; command and measured pressure differ by the ratio of two units; the measured pressure precedes the
+/// command; the pressure is absolute; the range of the values is implausible for a soft finger; the sampling
+/// interval is too long or too short.
 [[nodiscard]] std::vector<std::string> plausibility_warnings(const Log& log,
                                                              const PressureColumn& column = {},
                                                              ReadingSign sign = ReadingSign::kept);

@@ -126,6 +126,20 @@ TEST(CommandBefore, SingleSampleWithAnotherCommandDoesNotEndTheFirstCommand) {
   }
 }
 
+TEST(CommandBefore, WrongCommandOfASingleSampleIsNoCommandOfTheLog) {
+  for (const bool is_measured : {true, false}) {
+    for (const double wrong : {999.0, -300.0}) {
+      Log log = begun_at_a_step(7);
+      if (!is_measured) log = unmeasured(log);
+      const auto before_kpa = pressure_before_kpa(log);
+      ASSERT_TRUE(before_kpa);
+      log.pressure_command_kpa[500] = wrong;
+      EXPECT_EQ(pressure_before_kpa(log), before_kpa)
+          << wrong << ", a pressure was measured: " << is_measured;
+    }
+  }
+}
+
 TEST(CommandBefore, IsAddedAsASampleWithoutReadings) {
   const Log log = begun_at_a_step(7);
   const Log longer = with_command_before(log, 7);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/numbers.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::plausibility_warnings_test {
@@ -103,6 +104,18 @@ TEST(PlausibilityWarnings, CorrectLogsGiveNoWarning) {
       logs.push_back(simulated(loaded(name), signal, 20, 0.05, 7));
     EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "") << name;
   }
+}
+
+TEST(PlausibilityWarnings, SingleWrongCommandIsReportedWithTimeAndValue) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 20, 0.05, 7);
+  const std::size_t at = log.size() / 2;
+  log.pressure_command_kpa[at] = 999;
+  const std::string warnings = all_of(plausibility_warnings(log));
+  EXPECT_NE(warnings.find("1 single sample has a command outside the range of all other samples"),
+            std::string::npos)
+      << warnings;
+  EXPECT_NE(warnings.find("999 kPa at " + significant(log.time_s[at], 6) + " s"), std::string::npos)
+      << warnings;
 }
 
 TEST(PlausibilityWarnings, ReversedReadingsNameTheSignThatIsNeeded) {
