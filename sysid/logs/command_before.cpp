@@ -52,6 +52,22 @@ double median_mm(const Log& log, std::size_t first, std::size_t last) {
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
 }
 
+/// Returns the range of the medians of groups of successive readings [mm]. A single outlier does not change
+/// this range by more than the noise. Returns 0 if there are fewer than two groups.
+double range_of_medians_mm(const Log& log) {
+  std::vector<double> medians;
+  std::vector<double> group;
+  for (const double reading : log.displacement_mm) {
+    if (std::isfinite(reading)) group.push_back(reading);
+    if (group.size() < at_an_end) continue;
+    medians.push_back(median_of(std::span(group)));
+    group.clear();
+  }
+  if (medians.empty()) return 0;
+  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
+  return *most - *least;
+}
+
 /// Returns the command of the log that is nearest to a pressure. If the pressure is outside the range of the
 /// commands, the function returns the pressure.
 double command_near(double pressure_kpa, const std::vector<double>& commands, double least_kpa,
@@ -79,7 +95,7 @@ std::optional<double> by_displacement(const Log& log, double least_kpa, double m
   const std::size_t standing = stands_for(log, range_kpa);
   if (standing < fewest_standing || standing == log.size()) return {};
   const double motion_mm = median_mm(log, standing - at_an_end, standing) - median_mm(log, 0, at_an_end);
-  if (!(std::abs(motion_mm) > step_share * span_mm(log))) return {};
+  if (!(std::abs(motion_mm) > step_share * range_of_medians_mm(log))) return {};
   const double before_kpa = motion_mm > 0 ? least_kpa : most_kpa;
   if (!(std::abs(log.pressure_command_kpa.front() - before_kpa) > far * range_kpa)) return {};
   return before_kpa;

@@ -22,7 +22,8 @@ namespace softgrip::sysid {
 /// pressure.
 ///
 /// If the log contains no measured pressure, the displacement indicates a previous command if it moves by
-/// more than 20 % of its range while the first command is held. The result is the lowest command of the log
+/// more than 20 % of its range while the first command is held. Motion and range are computed from medians of
+/// five readings, so that an outlier has no effect. The result is the lowest command of the log
 /// if the displacement rises, and the highest command if it falls. The result is nullopt if the first command
 /// differs from this lowest or highest command by at most 10 % of the range of the commands, if it is held
 /// for less than 20 samples, or if it never changes.

@@ -140,6 +140,18 @@ TEST(CommandBefore, WrongCommandOfASingleSampleIsNoCommandOfTheLog) {
   }
 }
 
+TEST(CommandBefore, OutlierOfTheDisplacementHasNoEffect) {
+  const auto before_kpa = pressure_before_kpa(unmeasured(begun_at_a_step(7)));
+  ASSERT_TRUE(before_kpa);
+  for (const std::size_t at : {2U, 198U, 500U}) {
+    for (const double outlier_mm : {120.0, -1e4}) {
+      Log log = unmeasured(begun_at_a_step(7));
+      log.displacement_mm[at] = outlier_mm;
+      EXPECT_EQ(pressure_before_kpa(log), before_kpa) << outlier_mm << " mm in sample " << at;
+    }
+  }
+}
+
 TEST(CommandBefore, IsAddedAsASampleWithoutReadings) {
   const Log log = begun_at_a_step(7);
   const Log longer = with_command_before(log, 7);
