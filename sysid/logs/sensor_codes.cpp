@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <optional>
+#include <set>
 
 namespace softgrip::sysid {
 namespace {
@@ -24,6 +26,39 @@ constexpr double most_codes = 0.5;
 bool is_code_value(double value) {
   return std::find(code_values.begin(), code_values.end(), value) != code_values.end() ||
          std::abs(value) > 1e29;
+}
+
+/// Range of the values that are no codes.
+struct OtherValues {
+  double lowest = 0;
+  double highest = 0;
+
+  [[nodiscard]] double distance_to(double value) const {
+    return std::max({value - highest, lowest - value, 0.0});
+  }
+};
+
+/// Returns the suspects that a motion reaches: next to such a value there is a reading that is nearer to it
+/// than to the range of the other values. A motion approaches a position through intermediate values, whereas
+/// a reading jumps to an error code and back.
+std::set<double> reached_by_motion(std::span<const double> values,
+                                   const std::map<double, std::size_t>& suspects, const OtherValues& others) {
+  std::set<double> reached;
+  std::optional<double> before;
+  const auto compare = [&](double value, double neighbour) {
+    const bool is_near = value != neighbour && !is_code_value(neighbour) &&
+                         std::abs(value - neighbour) < others.distance_to(neighbour);
+    if (is_near && suspects.contains(value)) reached.insert(value);
+  };
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    if (before) {
+      compare(value, *before);
+      compare(*before, value);
+    }
+    before = value;
+  }
+  return reached;
 }
 
 }  // namespace
@@ -50,11 +85,16 @@ std::vector<double> sensor_codes(std::span<const double> values) {
   if (others.size() < 2 ||
       static_cast<double>(others.size()) < most_codes * static_cast<double>(sorted.size()))
     return {};
-  const double span = others.back() - others.front();
+  OtherValues range{others.front(), others.back()};
+  for (const double value : reached_by_motion(values, suspects, range)) {
+    suspects.erase(value);
+    range.lowest = std::min(range.lowest, value);
+    range.highest = std::max(range.highest, value);
+  }
+  const double span = range.highest - range.lowest;
   std::vector<double> codes;
   for (const auto& [value, count] : suspects) {
-    const bool outside =
-        value > others.back() + far_outside * span || value < others.front() - far_outside * span;
+    const bool outside = range.distance_to(value) > far_outside * span;
     if (span > 0 && outside && (is_code_value(value) || count >= fewest_repeats)) codes.push_back(value);
   }
   return codes;

@@ -8,8 +8,10 @@ namespace softgrip::sysid {
 
 /// Returns the values that are error codes instead of readings, in ascending order. An error code is far
 /// outside the range of all other values. In addition, it is a typical code (999, -9999 and similar numbers),
-/// or it occurs at least three times. Values that are not finite are ignored. Returns no codes for fewer than
-/// 20 finite values, or if more than half of the values seem to be codes.
+/// or it occurs at least three times. A value that a motion reaches through intermediate values is no error
+/// code: next to such a value there is a reading that is nearer to it than to the range of the other values.
+/// Values that are not finite are ignored. Returns no codes for fewer than 20 finite values, or if more than
+/// half of the values seem to be codes.
 [[nodiscard]] std::vector<double> sensor_codes(std::span<const double> values);
 
 }  // namespace softgrip::sysid

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace softgrip::sysid::sensor_codes_test {
@@ -26,6 +27,27 @@ TEST(SensorCodes, AreKnownOrRepeatedValuesFarFromAllReadings) {
   for (int i = 0; i < 200; ++i) in_range.push_back(10.0 * i);
   in_range[7] = 999;
   EXPECT_EQ(sensor_codes(in_range), std::vector<double>{});
+}
+
+/// Returns 6000 readings of a finger that rests and then moves to 5.7 mm for 200 samples. The readings have a
+/// resolution of 0.01 mm.
+std::vector<double> long_rest() {
+  std::vector<double> column;
+  double position = 0;
+  for (int i = 0; i < 6000; ++i) {
+    position += 0.1 * ((i >= 5500 && i < 5700 ? 5.7 : 0) - position);
+    column.push_back(std::round(100 * position + i % 5 - 2) / 100);
+  }
+  return column;
+}
+
+TEST(SensorCodes, PlateauOfAMotionIsNoCode) {
+  EXPECT_EQ(sensor_codes(long_rest()), std::vector<double>{});
+  for (const double code : {999.0, -50.0}) {
+    std::vector<double> with = long_rest();
+    for (const std::size_t at : {100U, 101U, 5650U, 5660U}) with[at] = code;
+    EXPECT_EQ(sensor_codes(with), std::vector<double>{code}) << "a code during rest and during the motion";
+  }
 }
 
 }  // namespace
