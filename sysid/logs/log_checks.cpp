@@ -11,6 +11,7 @@
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/log_header.h"
 #include "sysid/logs/sensor_codes.h"
+#include "sysid/logs/signal_gaps.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
@@ -30,11 +31,6 @@ constexpr double largest_displacement_mm = 5000;
 /// Longest accepted median sampling interval [s]. Even slow processes, such as furnaces, are sampled at
 /// intervals of a few minutes.
 constexpr double longest_median_interval_s = 600;
-/// Limit of the interval between two samples [s]. A log is refused if an interval exceeds this limit and
-/// `hole_intervals` median intervals, and if the command changes in this interval by more than 2 % of its
-/// range.
-constexpr double hole_s = 0.5;
-constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;
 
 std::string percent(double share) {
@@ -66,6 +62,7 @@ class Check {
     isolated_pressures();
     intervals();
     missing_readings();
+    missing_pressure();
     if (options.require_motion) excitation();
     clipping(options.clipped_share_refused);
   }
@@ -136,8 +133,8 @@ class Check {
         longest_s = interval;
       }
       const double change = std::abs(log_.pressure_command_kpa[i] - log_.pressure_command_kpa[i - 1]);
-      if (interval > hole_s && interval > hole_intervals * sampling_.median_interval_s &&
-          change > 0.02 * command_.width()) {
+      if (interval > shortest_gap_s && interval > shortest_gap_intervals * sampling_.median_interval_s &&
+          change > least_gap_change * command_.width()) {
         refuse(i, source_.time_column,
                "a gap of " + significant(interval) + " s in which the command changed by " +
                    significant(change) + " kPa",
@@ -250,6 +247,12 @@ class Check {
     } else {
       note(at, message + "; these samples are simulated, but not compared with the model");
     }
+  }
+
+  void missing_pressure() {
+    if (const auto gap = pressure_gap(log_))
+      note(gap->first, gap_sentence(log_, *gap) +
+                           "; a model that is driven by the measured pressure needs this pressure");
   }
 
   void excitation() {

@@ -6,6 +6,7 @@
 
 #include "document/problem.h"
 #include "sysid/logs/command_before.h"
+#include "sysid/logs/signal_gaps.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 
@@ -66,6 +67,12 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
                     {},
                     "the log has no column 'pressure_kpa', but --drive measured requires this column",
                     {}});
+    } else if (const auto gap = sysid::pressure_gap(log); input.drive == "measured" && gap) {
+      problems.add({log.path,
+                    {1, 1},
+                    {},
+                    sysid::gap_sentence(log, *gap),
+                    "cut the log at this gap and give the two parts as two logs, or use --drive command"});
     }
   }
   if (!problems.empty()) {

@@ -1,0 +1,63 @@
+#include "sysid/logs/signal_gaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/numbers.h"
+#include "base/statistics.h"
+#include "sysid/logs/unit_factors.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::vector<std::size_t> finite_samples(const std::vector<double>& values) {
+  std::vector<std::size_t> samples;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) samples.push_back(i);
+  }
+  return samples;
+}
+
+/// Returns the smallest change of the command that counts as a change [kPa].
+double least_change_kpa(const Log& log) {
+  return least_gap_change * extent_of(log.pressure_command_kpa).value_or(ColumnExtent{}).width();
+}
+
+SignalGap gap_between(const Log& log, std::size_t first, std::size_t last) {
+  const auto [low, high] =
+      std::minmax_element(log.pressure_command_kpa.begin() + static_cast<std::ptrdiff_t>(first),
+                          log.pressure_command_kpa.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  return {first, last, log.time_s[last] - log.time_s[first], *high - *low};
+}
+
+}  // namespace
+
+std::optional<SignalGap> pressure_gap(const Log& log) {
+  std::vector<std::size_t> ends = finite_samples(log.pressure_kpa);
+  if (ends.size() < 2) return {};
+  std::vector<double> intervals_s;
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    intervals_s.push_back(log.time_s[ends[k]] - log.time_s[ends[k - 1]]);
+  const double shortest_s =
+      std::max(shortest_gap_s, shortest_gap_intervals * median_of(std::span(intervals_s)));
+  if (ends.front() > 0) ends.insert(ends.begin(), 0);
+  if (ends.back() + 1 < log.size()) ends.push_back(log.size() - 1);
+  std::optional<SignalGap> longest;
+  for (std::size_t k = 1; k < ends.size(); ++k) {
+    // Between two neighbouring samples, no measured pressure is missing.
+    if (ends[k] == ends[k - 1] + 1 || log.time_s[ends[k]] - log.time_s[ends[k - 1]] <= shortest_s) continue;
+    const SignalGap gap = gap_between(log, ends[k - 1], ends[k]);
+    if (gap.change_kpa > least_change_kpa(log) && (!longest || gap.length_s > longest->length_s))
+      longest = gap;
+  }
+  return longest;
+}
+
+std::string gap_sentence(const Log& log, const SignalGap& gap) {
+  return "a gap of " + significant(gap.length_s, 3) + " s in the measured pressure, from " +
+         significant(log.time_s[gap.first], 6) + " s to " + significant(log.time_s[gap.last], 6) +
+         " s, in which the command changed by " + significant(gap.change_kpa, 3) + " kPa";
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,38 @@
+#pragma once
+// Finds ranges of a log in which a measured column contains no information although the command changes.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sysid/logs/log.h"
+
+namespace softgrip::sysid {
+
+/// A range of samples without information from a column is a gap if it fulfils three conditions: it is longer
+/// than this duration [s], ...
+inline constexpr double shortest_gap_s = 0.5;
+/// ... it is longer than this number of usual intervals of the column, ...
+inline constexpr double shortest_gap_intervals = 20;
+/// ... and the command changes in the range by more than this share of its range in the log.
+inline constexpr double least_gap_change = 0.02;
+
+/// A gap in a measured column.
+struct SignalGap {
+  /// Last sample before the gap that has a value, or the first sample of the log if there is no such sample.
+  std::size_t first = 0;
+  /// First sample after the gap that has a value, or the last sample of the log if there is no such sample.
+  std::size_t last = 0;
+  double length_s = 0;    ///< time from `first` to `last`
+  double change_kpa = 0;  ///< difference between the largest and the smallest command from `first` to `last`
+};
+
+/// Returns the longest gap in the measured pressure, or nullopt if there is none. The usual interval is the
+/// median interval between two measured pressures, so a slow sensor has no gaps.
+[[nodiscard]] std::optional<SignalGap> pressure_gap(const Log& log);
+
+/// Returns a sentence about a gap in the measured pressure, without a full stop.
+[[nodiscard]] std::string gap_sentence(const Log& log, const SignalGap& gap);
+
+}  // namespace softgrip::sysid
