@@ -63,6 +63,8 @@ class Check {
     intervals();
     missing_readings();
     missing_pressure();
+    frozen("the readings", log_.displacement_mm, in_unit(" mm"));
+    frozen("the measured pressure", log_.pressure_kpa, " kPa");
     if (options.require_motion) excitation();
     clipping(options.clipped_share_refused);
   }
@@ -253,6 +255,19 @@ class Check {
     if (const auto gap = pressure_gap(log_))
       note(gap->first, gap_sentence(log_, *gap) +
                            "; a model that is driven by the measured pressure needs this pressure");
+  }
+
+  /// Notes a column that keeps one value while the command changes. clipping() reports extreme values.
+  void frozen(const std::string& name, const std::vector<double>& values, const std::string& unit) {
+    const auto range = frozen_range(log_, values);
+    if (!range) return;
+    const bool is_pressure = &values == &log_.pressure_kpa;
+    note(range->first, name + (is_pressure ? " remains" : " remain") + " at exactly " +
+                           significant(values[range->first], 6) + unit + " from " +
+                           significant(log_.time_s[range->first], 6) + " s to " +
+                           significant(log_.time_s[range->last], 6) + " s, while the command changes by " +
+                           significant(range->change_kpa, 3) +
+                           " kPa; check if the sensor or its connection failed in this time");
   }
 
   void excitation() {

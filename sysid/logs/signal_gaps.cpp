@@ -31,6 +31,23 @@ SignalGap gap_between(const Log& log, std::size_t first, std::size_t last) {
   return {first, last, log.time_s[last] - log.time_s[first], *high - *low};
 }
 
+/// Successive equal values: elements [begin, end) of a list of samples.
+struct Run {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<std::size_t>& samples) {
+  std::vector<Run> runs;
+  for (std::size_t begin = 0; begin < samples.size();) {
+    std::size_t end = begin + 1;
+    while (end < samples.size() && values[samples[end]] == values[samples[begin]]) ++end;
+    runs.push_back({begin, end});
+    begin = end;
+  }
+  return runs;
+}
+
 }  // namespace
 
 std::optional<SignalGap> pressure_gap(const Log& log) {
@@ -58,6 +75,31 @@ std::string gap_sentence(const Log& log, const SignalGap& gap) {
   return "a gap of " + significant(gap.length_s, 3) + " s in the measured pressure, from " +
          significant(log.time_s[gap.first], 6) + " s to " + significant(log.time_s[gap.last], 6) +
          " s, in which the command changed by " + significant(gap.change_kpa, 3) + " kPa";
+}
+
+std::optional<SignalGap> frozen_range(const Log& log, const std::vector<double>& values) {
+  const std::vector<std::size_t> samples = finite_samples(values);
+  const std::vector<Run> runs = runs_of(values, samples);
+  const ColumnExtent extent = extent_of(values).value_or(ColumnExtent{});
+  if (runs.empty()) return {};
+  std::vector<double> lengths;
+  for (const Run& run : runs) lengths.push_back(static_cast<double>(run.end - run.begin));
+  const double shortest = shortest_gap_intervals * median_of(std::span(lengths));
+  const double change_kpa = least_change_kpa(log);
+  std::optional<SignalGap> longest;
+  for (const Run& run : runs) {
+    const std::size_t first = samples[run.begin], last = samples[run.end - 1];
+    if (values[first] == extent.lowest || values[first] == extent.highest) continue;
+    std::size_t changed = run.begin;
+    while (changed < run.end && std::abs(log.pressure_command_kpa[samples[changed]] -
+                                         log.pressure_command_kpa[first]) <= change_kpa)
+      ++changed;
+    if (static_cast<double>(run.end - changed) <= shortest) continue;
+    if (log.time_s[last] - log.time_s[samples[changed]] <= shortest_gap_s) continue;
+    const SignalGap range = gap_between(log, first, last);
+    if (!longest || range.length_s > longest->length_s) longest = range;
+  }
+  return longest;
 }
 
 }  // namespace softgrip::sysid

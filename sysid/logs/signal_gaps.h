@@ -35,4 +35,12 @@ struct SignalGap {
 /// Returns a sentence about a gap in the measured pressure, without a full stop.
 [[nodiscard]] std::string gap_sentence(const Log& log, const SignalGap& gap);
 
+/// Returns the longest range in which a column keeps exactly the same value, although the command changes.
+/// Returns nullopt if there is no such range. The range counts from the first change of the command, because
+/// a value may be constant before this change. The usual interval is the median number of successive equal
+/// values. The largest and the smallest value of the column are not considered, because a sensor or a supply
+/// that saturates causes long ranges of these values.
+/// @param values  a column of the log; NaN is a missing value.
+[[nodiscard]] std::optional<SignalGap> frozen_range(const Log& log, const std::vector<double>& values);
+
 }  // namespace softgrip::sysid

@@ -419,6 +419,29 @@ TEST(Log, ClippingMayBeAllowed) {
   EXPECT_EQ(read->notes.front().line, 34);
 }
 
+TEST(Log, FrozenValuesAreNoted) {
+  Log log;
+  for (int i = 0; i < 400; ++i) {
+    const double p = std::abs(i % 200 - 100);
+    log.time_s.push_back(0.02 * i);
+    log.pressure_command_kpa.push_back(p);
+    log.pressure_kpa.push_back(p + 0.01 * ((i * 7919) % 11));
+    log.displacement_mm.push_back(0.2 * p + 0.01 * ((i * 104729) % 13));
+  }
+  for (std::size_t i = 120; i < 180; ++i) log.displacement_mm[i] = log.displacement_mm[120];
+  for (std::size_t i = 220; i < 280; ++i) log.pressure_kpa[i] = log.pressure_kpa[220];
+  Problems problems;
+  const auto read = parse_log("frozen.csv", format_log(log), problems);
+  ASSERT_TRUE(read) << problems.format();
+  ASSERT_EQ(read->notes.size(), 2U);
+  EXPECT_EQ(read->notes[0].line, 122);
+  EXPECT_NE(read->notes[0].text.find("from 2.4 s to 3.58 s, while the command changes by 59 kPa"),
+            std::string::npos)
+      << read->notes[0].text;
+  EXPECT_TRUE(read->notes[1].text.starts_with("the measured pressure remains at exactly "))
+      << read->notes[1].text;
+}
+
 TEST(Log, AShortLastCellWithoutALineBreakIsNoted) {
   std::string text = "time_s,displacement_mm,pressure_command_kpa\n";
   for (int i = 0; i < 100; ++i)

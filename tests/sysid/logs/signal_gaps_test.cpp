@@ -59,5 +59,31 @@ TEST(SignalGaps, AShortIntervalOrAConstantCommandIsNoGap) {
   EXPECT_FALSE(pressure_gap(unmeasured));
 }
 
+/// Returns the frozen range of the readings, if the readings of the samples [first, last) are constant.
+std::optional<SignalGap> frozen(double resolution, std::size_t first, std::size_t last) {
+  Log log = triangles(resolution);
+  for (std::size_t i = first; i < last; ++i) log.displacement_mm[i] = log.displacement_mm[first];
+  return frozen_range(log, log.displacement_mm);
+}
+
+TEST(SignalGaps, FrozenValuesAreFound) {
+  for (const double resolution : {0.001, 0.01, 0.1}) {
+    const auto range = frozen(resolution, 130, 250);
+    ASSERT_TRUE(range) << resolution;
+    EXPECT_NEAR(static_cast<double>(range->first), 130, 1) << resolution;
+    EXPECT_NEAR(static_cast<double>(range->last), 249, 1) << resolution;
+    EXPECT_GT(range->change_kpa, 10);
+  }
+}
+
+TEST(SignalGaps, ReadingsOfLowResolutionAreNotFrozen) {
+  for (const double resolution : {0.001, 0.01, 0.1, 1.0, 5.0}) {
+    const Log log = triangles(resolution);
+    EXPECT_FALSE(frozen_range(log, log.displacement_mm)) << resolution;
+    EXPECT_FALSE(frozen_range(log, log.pressure_kpa)) << resolution;
+  }
+  EXPECT_FALSE(frozen(0.001, 130, 145)) << "only 15 equal readings";
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::signal_gaps_test
