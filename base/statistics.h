@@ -55,9 +55,7 @@ struct PairSums {
 };
 
 /// Returns the 97.5 % quantile of Student's t distribution. The standard error times this quantile is half of
-/// the width of a 95 % interval. The function uses the Cornish-Fisher expansion (Abramowitz and
-/// Stegun 26.7.5), whose error at 3 degrees of freedom is below 1 %. Fewer than 2 degrees of freedom are
-/// treated as 2.
+/// the width of a 95 % interval. Fewer than 1 degree of freedom are treated as 1, and more than 1e6 as 1e6.
 [[nodiscard]] double t_quantile(double degrees_of_freedom);
 
 /// Returns a quantile of the chi-square distribution (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 1931).

@@ -86,8 +86,8 @@ double prediction_bound(const std::vector<double>& errors) {
     logarithms.add(logarithm, logarithm);
   }
   const double deviation = std::sqrt(std::max(0.0, logarithms.variance_x()) / (n * (n - 1)));
-  const double quantile = std::sqrt(f_quantile(limits::probability, 1, n - 1));  // of Student's t, two-sided
-  return std::exp(logarithms.x / n + quantile * deviation * std::sqrt(1 + 1 / n));
+  static_assert(limits::probability == 0.95);
+  return std::exp(logarithms.x / n + t_quantile(n - 1) * deviation * std::sqrt(1 + 1 / n));
 }
 
 RunSpread::RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs, const Disagreement& more)

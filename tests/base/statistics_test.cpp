@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -47,11 +48,16 @@ TEST(ThirdDifferenceNoise, EstimatesTheNoiseWithoutTheTrend) {
   EXPECT_EQ(third_difference_noise(std::span(noisy).first(3)), 0);
 }
 
-TEST(TQuantile, MatchesTables) {
-  EXPECT_NEAR(t_quantile(3), 3.182, 0.03);
-  EXPECT_NEAR(t_quantile(10), 2.228, 0.001);
-  EXPECT_NEAR(t_quantile(30), 2.042, 0.0005);
-  EXPECT_NEAR(t_quantile(1e9), 1.95996, 1e-5);
+TEST(TQuantile, AgreesWithTheTableOfAbramowitzAndStegun) {
+  // The expected values are from Abramowitz and Stegun, table 26.10, for the probability 0.975.
+  const std::vector<std::pair<double, double>> table{{1, 12.706},  {2, 4.303},  {3, 3.182},  {4, 2.776},
+                                                     {5, 2.571},   {10, 2.228}, {30, 2.042}, {60, 2.000},
+                                                     {120, 1.980}, {1e9, 1.960}};
+  for (const auto& [degrees, quantile] : table) EXPECT_NEAR(t_quantile(degrees), quantile, 5e-4) << degrees;
+}
+
+TEST(TQuantile, TreatsFewerThanOneDegreeOfFreedomAsOne) {
+  for (const double degrees : {0.5, 0.0, -3.0}) EXPECT_EQ(t_quantile(degrees), t_quantile(1)) << degrees;
 }
 
 TEST(FQuantile, AgreesWithTheTablesOfAbramowitzAndStegun) {
