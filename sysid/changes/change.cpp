@@ -22,12 +22,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest error reduction of a reported cause, as a share of the largest error reduction in pressure or
-/// displacement. A cause below this limit may be a consequence of the cause with the largest reduction. The
-/// latter can change the input of the baseline model. The prediction for the changed input is less certain,
-/// because the model was not fitted to such inputs.
-constexpr double beside_another = 0.02;
-
 using Failure = tl::unexpected<std::string>;
 
 struct Prepared {
@@ -220,10 +214,6 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   add_intervals(diagnosis);
   std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),
                    [](const ChangeCause& a, const ChangeCause& b) { return a.gain > b.gain; });
-  if (!diagnosis.causes.empty()) {
-    const double most = diagnosis.causes.front().gain;
-    std::erase_if(diagnosis.causes, [&](const ChangeCause& c) { return c.gain < beside_another * most; });
-  }
   diagnosis.verdict = verdict_of(diagnosis);
   if (diagnosis.verdict != ChangeVerdict::unchanged)
     diagnosis.another_command = log_with_another_command(healthy, later);

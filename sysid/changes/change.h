@@ -51,9 +51,11 @@ struct ChangeCause {
   /// Share of the excess error that the cause explains [%]. The excess error is the whitened mean square
   /// minus 1, its value in the healthy logs.
   double share_percent = 0;
-  double gain = 0;  ///< reduction of the whitened mean square by the cause; the whitened mean square is 1 in
-                    ///< the healthy logs
-  double gain_lower = 0, gain_upper = 0;
+  /// Reduction of the whitened mean square by the cause. The whitened mean square is 1 in the healthy logs.
+  /// For a cause that is found without a fit (outliers, sampling), it is the mean square error due to the
+  /// cause, divided by the variance of the noise.
+  double gain = 0;
+  std::optional<Interval> gain_interval;  ///< 95 % interval of `gain`; empty for a cause without a fit
   std::vector<std::string> alternatives;  ///< ids of other causes that explain the later readings as well as
                                           ///< this cause
 };

@@ -85,6 +85,14 @@ std::string unusual_gain(double percent, bool is_limited) {
          "this difference is not significant. Record more healthy logs";
 }
 
+/// Returns true if the measured pressure has changed, with or without a known cause.
+bool has_changed_pressure(const ChangeDiagnosis& diagnosis) {
+  const auto is_of_pressure = [](const ChangeCause& cause) { return cause.judged == Judged::pressure; };
+  const auto is_left = [](const JudgedChange& j) { return j.judged == Judged::pressure && j.left_over; };
+  return std::any_of(diagnosis.causes.begin(), diagnosis.causes.end(), is_of_pressure) ||
+         std::any_of(diagnosis.readings.begin(), diagnosis.readings.end(), is_left);
+}
+
 /// Evaluates one quantity, the displacement or the pressure. Computes the spread of the healthy records and
 /// finds the causes of a change in the later records.
 class Judge {
@@ -122,15 +130,17 @@ class Judge {
       diagnosis.warnings.push_back(unfamiliar_input(judged.input_factor));
     const std::vector<std::string> other_starts = readings.other_starts();
     for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
+    const bool has_another_input = base_.judged == Judged::displacement && has_changed_pressure(diagnosis);
     std::vector<FittedEffect> found;
     Eigen::VectorXd white = readings.white(found);
     judged.loss_before = judged.loss_left = per_bin(readings, white);
     for (std::size_t step = 0; step < most_causes; ++step) {
       // The search for a further cause continues only if the remaining error exceeds the error that is
       // expected in a further healthy run. For the first cause, a smaller error may be sufficient
-      // (admits_a_change()).
+      // (admits_a_change()), unless the pressure has changed: it is the input of the model of the
+      // displacement, and the model was not fitted to such an input.
       const double rms = readings.plain_rms(found);
-      const bool is_comparable = step == 0 && other_starts.empty();
+      const bool is_comparable = step == 0 && other_starts.empty() && !has_another_input;
       const bool is_large = is_comparable ? spread_.admits_a_change(rms, judged.loss_left)
                                           : spread_.is_exceeded(rms, judged.loss_left);
       // The first search also runs for a small error, because the result lists all tested causes.
@@ -268,8 +278,7 @@ class Judge {
     cause.gain = scored.gain;
     const Comparison spread =
         compare(paired_losses(readings, search.without, scored.fit.white), 0, options_.seed);
-    cause.gain_lower = spread.lower;
-    cause.gain_upper = spread.upper;
+    cause.gain_interval = Interval{spread.lower, spread.upper};
     std::vector<const ScoredEffect*> others;
     for (const ScoredEffect& other : all) {
       if (other.fit.fitted.effect.id != cause.id && is_alternative(search, scored, other, ties))

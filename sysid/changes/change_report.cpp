@@ -45,7 +45,7 @@ Fields fields_of_cause(const ChangeCause& cause) {
           {"effect_rms", cause.effect_mm},
           {"unit", unit},
           {"share_percent", "share of the error [%]", decimals(cause.share_percent, 0)},
-          {"gain", Fields{{"value", cause.gain}, {"ci95", Value::List{cause.gain_lower, cause.gain_upper}}}},
+          {"gain", Fields{{"value", cause.gain}, {"ci95", interval_value(cause.gain_interval)}}},
           {"next_steps", Value::List{steps[0], steps[1]}},
           {"", "alternatives", cause.alternatives}};
 }
