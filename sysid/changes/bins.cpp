@@ -61,6 +61,18 @@ std::size_t Whitener::class_of(double peak_rate) const {
       peak_rate_kpa_per_s.begin());
 }
 
+double rms_of(const Binned& series) {
+  double sum = 0, count = 0;
+  for (const std::vector<double>& part : series) {
+    for (const double v : part) {
+      if (!std::isfinite(v)) continue;
+      sum += v * v;
+      count += 1;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
 std::vector<double> peak_rate_of(const Record& record, double bin_s) {
   return binned(record, rates_of(record), bin_s);
 }

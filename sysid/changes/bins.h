@@ -38,6 +38,9 @@ using Binned = std::vector<std::vector<double>>;
 [[nodiscard]] std::vector<std::vector<double>> minus(std::vector<std::vector<double>> from,
                                                      const std::vector<std::vector<double>>& what);
 
+/// Returns the root mean square of the finite values of a series; 0 if there is none.
+[[nodiscard]] double rms_of(const Binned& series);
+
 /// Returns the rate |dp/dt| of the drive in bins [kPa/s], after a peak detector that decays with a time
 /// constant of 0.5 s.
 [[nodiscard]] std::vector<double> peak_rate_of(const Record& record, double bin_s);

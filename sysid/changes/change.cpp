@@ -145,18 +145,6 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
         sampling.excess_mm);
 }
 
-/// Copies the intervals to the causes. For each quantity, both lists have the order in which the search found
-/// the causes.
-void add_intervals(ChangeDiagnosis& diagnosis) {
-  for (const JudgedChange& judged : diagnosis.readings) {
-    auto next = judged.intervals.begin();
-    for (ChangeCause& cause : diagnosis.causes) {
-      if (cause.judged == judged.judged && !cause.fitted.effect.id.empty() && next != judged.intervals.end())
-        cause.intervals = *next++;
-    }
-  }
-}
-
 ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
   const bool left =
       std::any_of(d.readings.begin(), d.readings.end(), [](const JudgedChange& j) { return j.left_over; });
@@ -211,7 +199,6 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
                  true, pressure_records(later, options.held), options, diagnosis);
   judge_change(fit_base(before.records, Judged::displacement, drive, base), pressure, after.records, options,
                diagnosis);
-  add_intervals(diagnosis);
   std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),
                    [](const ChangeCause& a, const ChangeCause& b) { return a.gain > b.gain; });
   diagnosis.verdict = verdict_of(diagnosis);

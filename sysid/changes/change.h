@@ -45,7 +45,7 @@ struct ChangeCause {
   model::OutputUnit output_unit = model::OutputUnit::mm;
   FittedEffect fitted;
   ChangeSize size;
-  EffectIntervals intervals;
+  EffectIntervals intervals;    ///< `intervals.size` is the interval of `size`
   double full_pressure_mm = 0;  ///< change of the displacement at full pressure due to the cause
   double effect_mm = 0;         ///< root mean square of the effect of the cause on the later readings
   /// Share of the excess error that the cause explains [%]. The excess error is the whitened mean square
@@ -111,8 +111,6 @@ struct JudgedChange {
   /// Name of the only later log with such an error; empty if there is none, or if other logs also have it.
   std::string unusual_log;
   std::vector<TriedCause> tried;
-  /// Intervals of the causes, in the order in which the causes were found.
-  std::vector<EffectIntervals> intervals;
   /// Causes that were not tested. Key: id of the cause. Value: description of a recording that would test the
   /// cause.
   std::map<std::string, std::string> not_tested;

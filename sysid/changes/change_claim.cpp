@@ -143,9 +143,13 @@ Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
                         is_visible(search, scored, required);
   if (!claim.condition_met) return veto_of(claim);
   const std::vector<FittedEffect> all = search.with(fitted);
-  claim.size = intervals_of(readings, all, search.healthy).back().size;
-  const ChangeSize size = size_of(readings, fitted, at_full_pressure(readings, readings.added({fitted})));
-  claim.largest_size = largest_size(readings, size.unit);
+  const ShownSize shown = shown_size(readings, fitted, intervals_of(readings, all, search.healthy).back());
+  if (shown.interval)
+    claim.size = Interval{shown.interval->lower - shown.neutral, shown.interval->upper - shown.neutral};
+  // The neutral value of a limit is far above all signals, so the distance from it is not compared with a
+  // range.
+  claim.largest_size =
+      shown.neutral == 0 ? largest_size(readings, shown.size.unit) : std::numeric_limits<double>::infinity();
   claim.error_without = readings.plain_rms(search.found);
   claim.error_with = readings.plain_rms(all);
   claim.explained_share = explained_share(search, scored, claim);

@@ -28,18 +28,6 @@ namespace {
 
 constexpr std::size_t most_causes = 3;
 
-double rms_of(const Binned& series) {
-  double sum = 0, count = 0;
-  for (const std::vector<double>& part : series) {
-    for (const double v : part) {
-      if (!std::isfinite(v)) continue;
-      sum += v * v;
-      count += 1;
-    }
-  }
-  return count > 0 ? std::sqrt(sum / count) : 0;
-}
-
 double rms_about_mean(const std::vector<double>& series) {
   PairSums sums;
   for (const double v : series) sums.add(v, v);
@@ -167,6 +155,7 @@ class Judge {
       judged.loss_left = per_bin(readings, white);
     }
     accept_named(diagnosis.causes, judged);
+    add_sizes(readings, found, diagnosis.causes);
     finish(readings, effects, found, judged);
     if (base_.judged == Judged::displacement && found.empty() && has_unusual_gain(judged))
       diagnosis.warnings.push_back(unusual_gain(
@@ -300,10 +289,24 @@ class Judge {
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
-    cause.size = size_of(readings, best, cause.full_pressure_mm);
     const double excess = per_bin(readings, search.without) - 1;
     cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
     return cause;
+  }
+
+  /// Adds the sizes and the intervals to the causes in this quantity.
+  /// @param found  effects of these causes, in the same order.
+  void add_sizes(const LaterReadings& readings, const std::vector<FittedEffect>& found,
+                 std::vector<ChangeCause>& causes) const {
+    const std::vector<EffectIntervals> intervals = intervals_of(readings, found, healthy_);
+    auto next = intervals.begin();
+    for (ChangeCause& cause : causes) {
+      if (cause.judged != base_.judged || cause.fitted.effect.id.empty()) continue;
+      const ShownSize shown = shown_size(readings, cause.fitted, *next);
+      cause.size = shown.size;
+      cause.intervals = *next++;
+      cause.intervals.size = shown.interval;
+    }
   }
 
   /// Returns the name of the record without which the error of the other later records is within the errors
@@ -322,7 +325,6 @@ class Judge {
 
   void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
               const std::vector<FittedEffect>& found, JudgedChange& judged) const {
-    judged.intervals = intervals_of(readings, found, healthy_);
     judged.later_mm = readings.plain_rms({});
     judged.explained_mm = found.empty() ? judged.later_mm : readings.plain_rms(found);
     if (spread_.is_exceeded(judged.explained_mm, judged.loss_left)) {

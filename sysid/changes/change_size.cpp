@@ -18,6 +18,50 @@ const double* number(const FittedEffect& effect, std::string_view name) {
   return nullptr;
 }
 
+/// Returns the rule for the size of the effect.
+SizedBy rule_of(const FittedEffect& effect) {
+  return effect.effect.size.value_or(sized_by(effect.effect.id));
+}
+
+/// Returns true if size_of() is the effect at full pressure.
+bool is_sized_at_full_pressure(const FittedEffect& effect) {
+  const SizedBy rule = rule_of(effect);
+  return !is_sized_by_both_gains(effect) &&
+         (rule.of == SizedBy::Of::full_pressure ||
+          (rule.of == SizedBy::Of::number && number(effect, rule.number) == nullptr));
+}
+
+/// Returns the size that is stated by one parameter.
+ShownSize size_by_parameter(const FittedEffect& effect, const EffectIntervals& intervals, std::size_t i) {
+  const EffectNumber& number = effect.effect.numbers[i];
+  // The further clauses of the description do not belong to the name of the quantity.
+  const std::string name = number.meaning.substr(0, number.meaning.find_first_of(",;"));
+  return {{name.empty() ? number.name : name, effect.numbers[i], number.unit},
+          intervals.numbers[i],
+          effect.effect.nothing[i]};
+}
+
+/// Returns the index of the parameter with the largest distance from its neutral value, in half widths of its
+/// interval. Returns nullopt if no interval excludes the neutral value. A parameter at a bound of its range
+/// is not determined, so it is skipped.
+std::optional<std::size_t> most_significant(const FittedEffect& effect, const EffectIntervals& intervals) {
+  std::optional<std::size_t> most;
+  double farthest = 1;
+  for (std::size_t i = 0; i + effect.effect.nuisance_numbers < effect.numbers.size(); ++i) {
+    const EffectNumber& number = effect.effect.numbers[i];
+    const double value = effect.numbers[i], neutral = effect.effect.nothing[i];
+    if (!intervals.numbers[i] || !std::isfinite(neutral)) continue;
+    if (!(value > number.lower && value < number.upper)) continue;
+    // The interval is limited to the range of the parameter, so one of its halves can be too narrow.
+    const double half = std::max(value - intervals.numbers[i]->lower, intervals.numbers[i]->upper - value);
+    const double distance = std::abs(value - neutral) / half;
+    if (!(distance > farthest)) continue;
+    farthest = distance;
+    most = i;
+  }
+  return most;
+}
+
 double largest_of(const Binned& series) {
   double largest = 0;
   for (const std::vector<double>& part : series) {
@@ -66,7 +110,7 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
   if (is_sized_by_both_gains(effect))
     return {"gain", 100 * (effect.numbers.front() + readings.nuisance({effect}).gain), "%"};
-  const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));
+  const SizedBy size = rule_of(effect);
   const auto sized = [&](double value) {
     return ChangeSize{std::string(size.what), size.factor * value, std::string(size.unit)};
   };
@@ -85,6 +129,17 @@ ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, do
   }
   return {std::string(SizedBy{}.what), full_pressure_mm,
           unit_of(readings.base().judged, model::OutputUnit::mm)};
+}
+
+ShownSize shown_size(const LaterReadings& readings, const FittedEffect& effect,
+                     const EffectIntervals& intervals) {
+  const Binned added = readings.added({effect});
+  const ShownSize size{size_of(readings, effect, at_full_pressure(readings, added)), intervals.size, 0};
+  const bool is_shown = !size.interval || excludes(*size.interval, 0);
+  if (!is_sized_at_full_pressure(effect) || (is_shown && std::abs(size.size.value) >= rms_of(added)))
+    return size;
+  const std::optional<std::size_t> parameter = most_significant(effect, intervals);
+  return parameter ? size_by_parameter(effect, intervals, *parameter) : size;
 }
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,8 @@
 #pragma once
 // Computes the size of a change as a quantity that a technician can check.
 
+#include <optional>
+
 #include "sysid/changes/change.h"
 
 namespace softgrip::sysid {
@@ -25,5 +27,21 @@ namespace softgrip::sysid {
 /// @param full_pressure_mm  change of the displacement at full pressure that the effect causes [mm].
 [[nodiscard]] ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect,
                                  double full_pressure_mm);
+
+/// Size that states a change, and its evidence.
+struct ShownSize {
+  ChangeSize size;
+  std::optional<Interval> interval;  ///< 95 % interval of `size`; empty: the data do not determine the size
+  double neutral = 0;                ///< value of `size` without the change
+};
+
+/// Returns the size of an effect with its interval. The effect at full pressure does not state the size of an
+/// effect that vanishes there, such as an oscillation. If the effect at full pressure is not significant or
+/// smaller than the RMS of the effect, the result is therefore the most significant parameter with a neutral
+/// value, if its interval excludes this value. A parameter that only defines the reference of the effect is
+/// not used.
+/// @param intervals  intervals of the effect: an element of intervals_of().
+[[nodiscard]] ShownSize shown_size(const LaterReadings& readings, const FittedEffect& effect,
+                                   const EffectIntervals& intervals);
 
 }  // namespace softgrip::sysid

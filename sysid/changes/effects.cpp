@@ -104,7 +104,7 @@ class Collector {
       fitted.push_back(i);
       effect.numbers.push_back({descriptor.name(i), std::string(spec.unit), spec.scale,
                                 std::max(spec.lower, range.lower), std::min(spec.upper, range.upper),
-                                descriptor.former_name(i)});
+                                descriptor.former_name(i), std::string(spec.meaning)});
       effect.nothing.push_back(spec.neutral);
     }
     for (const model::BlockSpec& start : starts) {
@@ -188,7 +188,8 @@ class Collector {
   }
   void add_softening() {
     const double p = base_.largest_kpa;
-    const EffectNumber share{"share", "", 0.02, 0, 3};
+    const EffectNumber share{
+        "share", "", 0.02, 0, 3, {}, "relative increase of the displacement by softening"};
     Effect below = form_of(cause_with<model::StressSoftening>(), "softer_below_the_largest");
     below.numbers = {share, {"range_kpa", "kPa", 5, 0.02 * p, 2 * p}};
     below.starts = {{0.03, 0.2 * p}, {0.03, 0.6 * p}};
@@ -206,7 +207,8 @@ class Collector {
   /// need not be a Bouc-Wen model.
   void add_crescent() {
     Effect effect = form_of(cause_with<model::DuhemHysteresis>(), "crescent");
-    effect.numbers = {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}};
+    effect.numbers = {{"share", "", 0.05, 0, 3, {}, "size of the hysteresis loop as a share of the span"},
+                      {"exponent", "", 1, 1.2, 6}};
     effect.starts = {{0.05, 1.8}, {0.05, 3.5}};
     effect.nothing = {0, nan};
     effect.apply = [](Extension& e, const std::vector<double>& n) { e.crescent = {n[0], n[1]}; };

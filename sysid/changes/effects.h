@@ -20,6 +20,7 @@ struct EffectNumber {
   std::string unit;
   double scale = 1, lower = 0, upper = 0;
   std::string formerly = {};  ///< deprecated name of the parameter; empty: none
+  std::string meaning = {};   ///< description of the parameter; empty: the name is used
 };
 
 /// One form of a cause, stated as an effect on the baseline model.

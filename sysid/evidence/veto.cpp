@@ -11,7 +11,7 @@ Veto veto_of(const Claim& claim) {
   if (!claim.condition_met) return Veto::not_tested;
   if (claim.size) {
     const auto& [lower, upper] = *claim.size;
-    if (!(lower > 0 || upper < 0)) return Veto::size_uncertain;
+    if (!excludes(*claim.size, 0)) return Veto::size_uncertain;
     // A cause is rejected only if every size in the interval is too large. Therefore the end of the interval
     // that is nearer to zero is compared with the largest possible size.
     if (std::min(std::abs(lower), std::abs(upper)) > claim.largest_size) return Veto::size_beyond_range;

@@ -14,6 +14,11 @@ struct Interval {
   double upper = 0;
 };
 
+/// Returns true if the interval does not contain the value.
+[[nodiscard]] inline bool excludes(const Interval& interval, double value) {
+  return interval.lower > value || interval.upper < value;
+}
+
 /// Returns true if the logs determine the value: the interval is at most 20 times as wide as the magnitude of
 /// the value.
 [[nodiscard]] inline bool is_determined(const Interval& interval, double value) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sysid/changes/change_size.h"
 #include "tests/sysid/changes/pressure_base.h"
 
 namespace softgrip::sysid::change_claim_test {
@@ -133,6 +134,37 @@ TEST(ChangeClaimOfDrift, ADriftIsShownByReadingsAtRestWithoutWhitening) {
   EXPECT_EQ(vetoed(search, drift), Veto::none);
   for (double& number : drift.fit.fitted.numbers) number *= 0.001;
   EXPECT_NE(vetoed(search, drift), Veto::none);
+}
+
+/// The mean of an oscillation at full pressure is nearly zero, but the oscillation has a period.
+TEST(ChangeClaimOfInertia, AnOscillationIsShownByItsPeriod) {
+  const Base base =
+      fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
+  std::vector<Log> logs = test::logs_of({}, 5);
+  const std::vector<Record> healthy_records = make_records(logs, {});
+  std::vector<Effect> effects = effects_for(base, healthy_records, {}, false);
+  std::erase_if(effects, [](const Effect& effect) { return effect.id != "inertia"; });
+  ASSERT_FALSE(effects.empty());
+  constexpr double period_s = 0.6, damping_ratio = 0.1;
+  for (std::size_t r = 0; r < logs.size(); ++r) {
+    const Record& record = healthy_records[r];
+    const std::vector<double> before = predict_base(base, record, Extension{});
+    const std::vector<double> after =
+        predict_base(base, record, extension_of({{effects.front(), {period_s, damping_ratio}}}));
+    for (std::size_t i = 0; i < logs[r].size(); ++i) logs[r].displacement_mm[i] += after[i] - before[i];
+  }
+  const std::vector<Record> records = make_records(logs, {});
+  const LaterReadings later = readings_of(base, records, residuals_of(base, records));
+  const std::vector<FittedEffect> none;
+  const Eigen::VectorXd without = later.white(none);
+  const std::vector<HealthyFits> healthy = healthy_fits(base, false, 1);
+  const RunSpread spread(healthy, base.units.runs());
+  const ScoredEffect mode = ranked_effects(later, effects, {}, {}, 1).front();
+  EXPECT_EQ(vetoed({later, none, without, healthy, spread}, mode), Veto::none);
+  const std::vector<FittedEffect> found{mode.fit.fitted};
+  const ShownSize shown = shown_size(later, found.front(), intervals_of(later, found, healthy).front());
+  EXPECT_EQ(shown.size.unit, "s");
+  EXPECT_NEAR(shown.size.value, period_s, 0.02);
 }
 
 }  // namespace
