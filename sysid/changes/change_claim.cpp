@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "base/statistics.h"
@@ -110,6 +111,33 @@ bool only_imitates(const CauseSearch& search, const ScoredEffect& best, const Sc
              limits::form_error_share * (best.fit.white - search.without).squaredNorm();
 }
 
+std::optional<Interval> distance_from_neutral(const ShownSize& shown) {
+  if (!shown.interval) return std::nullopt;
+  return Interval{shown.interval->lower - shown.neutral, shown.interval->upper - shown.neutral};
+}
+
+/// Adds the size of the effect to the claim. The intervals are those that the answer states if the effect is
+/// the last one that is found.
+void add_sizes(Claim& claim, const CauseSearch& search, const FittedEffect& fitted) {
+  const LaterReadings& readings = search.readings;
+  const double deviation = readings.nuisance(search.with(fitted)).gain;
+  const std::vector<FittedEffect> all = search.with(with_whole_gain(readings, fitted, deviation));
+  const std::vector<EffectIntervals> intervals = intervals_of(readings, all, search.healthy);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ShownSize shown = shown_size(readings, all[i], intervals[i]);
+    const std::optional<Interval> size = distance_from_neutral(shown);
+    if (i < search.found.size()) {
+      claim.keeps_other_sizes = claim.keeps_other_sizes && (!size || excludes(*size, 0));
+      continue;
+    }
+    claim.size = size;
+    // The neutral value of a limit is far above all signals, so the distance from it is not compared with a
+    // range.
+    claim.largest_size = shown.neutral == 0 ? largest_size(readings, shown.size.unit)
+                                            : std::numeric_limits<double>::infinity();
+  }
+}
+
 }  // namespace
 
 std::vector<FittedEffect> CauseSearch::with(const FittedEffect& one) const {
@@ -143,13 +171,7 @@ Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
                         is_visible(search, scored, required);
   if (!claim.condition_met) return veto_of(claim);
   const std::vector<FittedEffect> all = search.with(fitted);
-  const ShownSize shown = shown_size(readings, fitted, intervals_of(readings, all, search.healthy).back());
-  if (shown.interval)
-    claim.size = Interval{shown.interval->lower - shown.neutral, shown.interval->upper - shown.neutral};
-  // The neutral value of a limit is far above all signals, so the distance from it is not compared with a
-  // range.
-  claim.largest_size =
-      shown.neutral == 0 ? largest_size(readings, shown.size.unit) : std::numeric_limits<double>::infinity();
+  add_sizes(claim, search, fitted);
   claim.error_without = readings.plain_rms(search.found);
   claim.error_with = readings.plain_rms(all);
   claim.explained_share = explained_share(search, scored, claim);

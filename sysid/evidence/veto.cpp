@@ -16,6 +16,7 @@ Veto veto_of(const Claim& claim) {
     // that is nearer to zero is compared with the largest possible size.
     if (std::min(std::abs(lower), std::abs(upper)) > claim.largest_size) return Veto::size_beyond_range;
   }
+  if (!claim.keeps_other_sizes) return Veto::other_size_uncertain;
   if (!(claim.error_with < claim.error_without)) return Veto::error_not_reduced;
   if (claim.explained_share < limits::least_explained_share) return Veto::explains_too_little;
   if (claim.predicts_worse) return Veto::not_predictive;
@@ -31,6 +32,8 @@ std::string_view reason_of(Veto veto) {
       return "the confidence interval for the size of the effect contains zero";
     case Veto::size_beyond_range:
       return "the size of the effect exceeds the range of the signal";
+    case Veto::other_size_uncertain:
+      return "the effect makes the size of another cause uncertain: its confidence interval then contains zero";
     case Veto::error_not_reduced:
       return "the effect does not reduce the error of the readings";
     case Veto::explains_too_little:

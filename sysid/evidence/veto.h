@@ -18,6 +18,8 @@ struct Claim {
   /// largest pressure [kPa] or the length of the longest log [s]. For all other units it is infinite, so
   /// every size is possible.
   double largest_size = 0;
+  /// True: the sizes of all causes that were found before remain certain if the cause is added.
+  bool keeps_other_sizes = true;
   double error_without = 0;  ///< RMSE of the model without the cause, over the evaluated readings
   double error_with = 0;     ///< RMSE of the model with the cause, over the evaluated readings
   /// Share of the remaining error that the cause explains, at most 1.
@@ -33,6 +35,7 @@ enum class Veto {
   none,
   size_uncertain,
   size_beyond_range,
+  other_size_uncertain,
   error_not_reduced,
   explains_too_little,
   not_predictive,

@@ -77,6 +77,19 @@ TEST_F(ChangeClaim, AnInvisibleEffectIsNotTested) {
   EXPECT_EQ(vetoed(search_, delay), Veto::not_tested);
 }
 
+/// The size of a lag of 0.1 ms is not certain.
+TEST_F(ChangeClaim, ACauseMustNotMakeTheSizeOfAnotherCauseUncertain) {
+  FittedEffect lag = scored("valve_lag").fit.fitted;
+  lag.numbers.front() = 1e-4;
+  const std::vector<FittedEffect> found{lag};
+  const Eigen::VectorXd without = later_.white(found);
+  const CauseSearch search{later_, found, without, healthy_, spread_};
+  std::vector<Effect> effects = effects_for(base_, later_.records(), {}, true);
+  std::erase_if(effects, [](const Effect& effect) { return effect.id != "transport_delay"; });
+  EXPECT_EQ(vetoed(search, ranked_effects(later_, effects, found, {}, 1).front()),
+            Veto::other_size_uncertain);
+}
+
 /// A loss of pressure causes the larger part of the error, with and without whitening.
 TEST_F(ChangeClaim, AnEffectThatExplainsASmallPartOfTheErrorIsRejected) {
   const LaterReadings later = readings({.lost_kpa_per_s = 3, .delay_s = 0.02});

@@ -29,6 +29,9 @@ TEST(Veto, EachUnmetConditionRejectsTheClaim) {
   claim.size.reset();
   EXPECT_EQ(veto_of(claim), Veto::none);
   claim = sound();
+  claim.keeps_other_sizes = false;
+  EXPECT_EQ(veto_of(claim), Veto::other_size_uncertain);
+  claim = sound();
   claim.error_with = 1.03;
   EXPECT_EQ(veto_of(claim), Veto::error_not_reduced);
   claim = sound();
@@ -56,8 +59,8 @@ TEST(Veto, UnchangedErrorIsRejectedAsNotReduced) {
 TEST(Veto, EachVetoHasADistinctReason) {
   std::set<std::string_view> reasons;
   for (const Veto veto :
-       {Veto::size_uncertain, Veto::size_beyond_range, Veto::error_not_reduced, Veto::explains_too_little,
-        Veto::not_predictive, Veto::not_tested, Veto::absent_where_required})
+       {Veto::size_uncertain, Veto::size_beyond_range, Veto::other_size_uncertain, Veto::error_not_reduced,
+        Veto::explains_too_little, Veto::not_predictive, Veto::not_tested, Veto::absent_where_required})
     EXPECT_TRUE(reasons.insert(reason_of(veto)).second);
 }
 
