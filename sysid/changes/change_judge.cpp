@@ -27,6 +27,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_causes = 3;
+constexpr auto* reason_for_no_search =
+    "the error of the later logs is within the error permitted for a further healthy run";
 
 double rms_about_mean(const std::vector<double>& series) {
   PairSums sums;
@@ -138,12 +140,8 @@ class Judge {
           ranked_effects(readings, effects, found, tolerance, options_.threads);
       if (step == 0) {
         for (const ScoredEffect& each : ranked)
-          judged.tried.push_back({each.fit.fitted.effect.id,
-                                  each.fit.fitted.effect.form,
-                                  each.gain,
-                                  each.usual,
-                                  each.tolerance,
-                                  {}});
+          judged.tried.push_back({each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain,
+                                  each.usual, each.tolerance, is_large ? "" : reason_for_no_search});
       }
       if (!is_large) break;
       const std::optional<ChangeCause> cause =

@@ -106,8 +106,13 @@ std::string unchanged_sentence(const std::vector<JudgedChange>& readings) {
            "logs. Therefore, a larger difference from the baseline model is permitted.";
   if (!readings.empty() && std::all_of(readings.begin(), readings.end(), is_single))
     return unchanged_since_one_log(readings);
-  return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
-         "from each other.";
+  std::string permitted;
+  for (const JudgedChange& judged : readings)
+    permitted += (permitted.empty() ? "" : " and ") + significant(judged.allowed_mm, 2) + " " +
+                 unit_of(judged.judged, judged.output_unit);
+  return "Unchanged: the errors of the later logs are within the error permitted for a further healthy run "
+         "(" +
+         permitted + ").";
 }
 
 /// Largest number of tested causes that the figure shows.

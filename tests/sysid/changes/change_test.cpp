@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "base/numbers.h"
 #include "sysid/changes/change_report.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/changes/regulator.h"
@@ -30,6 +31,12 @@ TEST(Change, DifferentInputAndZeroOffsetAreNoChange) {
   const ChangeDiagnosis d = changed({.zero_mm = 0.4});
   EXPECT_EQ(d.verdict, ChangeVerdict::unchanged) << change_sentence(d);
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
+  const std::string permitted = significant(d.readings.back().allowed_mm, 2) + " mm";
+  EXPECT_EQ(
+      change_sentence(d),
+      "Unchanged: the errors of the later logs are within the error permitted for a further healthy run (" +
+          permitted + ").");
+  for (const TriedCause& tried : d.readings.back().tried) EXPECT_NE(tried.rejected, "") << tried.id;
 }
 
 TEST(Change, ZeroOffsetIsRelativeToTheHealthyLogs) {
