@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "base/thread_budget.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
@@ -102,7 +103,12 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
     valve.from_command.back().drive = Drive::command;
   }
   result.model = with_valve(result.fitted, stage);
-  if (stage.is_far_off()) {
+  if (!stage.limits_reached.empty()) {
+    result.warnings.push_back("the fit of the valve ended at the upper limit of the search, with a " +
+                              enumerated(stage.limits_reached, " and a ") +
+                              ". The logs are too short to determine these values, or the measured pressure "
+                              "does not follow the command");
+  } else if (stage.is_far_off()) {
     result.warnings.push_back(
         "a model of dead time and lag does not describe the valve. The difference between this model and the "
         "measured pressure is " +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/numbers.h"
 #include "base/parallel.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/leak.h"
@@ -18,7 +19,9 @@
 #include "model/play.h"
 #include "model/two_way_lag.h"
 #include "sysid/fitting/minimise.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/input_smoothing.h"
+#include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -30,12 +33,37 @@ double first_finite(const std::vector<double>& values) {
   return found == values.end() ? 0 : *found;
 }
 
-/// Lowest and highest measured pressure and highest supply pressure in the logs [kPa].
+/// Lowest and highest measured pressure and highest supply pressure in the logs [kPa], and the times of the
+/// logs.
 struct Scene {
   double lowest_kpa = std::numeric_limits<double>::infinity();
   double highest_kpa = -lowest_kpa;
   double highest_supply_kpa = 0;
+  double unit_s = 1;                                            ///< result of time_unit_s()
+  double interval_s = std::numeric_limits<double>::infinity();  ///< smallest mean interval between samples
+  double length_s = 0;                                          ///< length of the longest log
+
+  // The limits of a search are multiples of the unit of time. A log that permits slower or faster valves
+  // widens them. 1e3 s and 1e4 s are the limits of the blocks.
+  [[nodiscard]] double most_delay_s() const { return std::min(std::max(5 * unit_s, 0.25 * length_s), 1e3); }
+  [[nodiscard]] double most_lag_s() const { return std::min(std::max(10 * unit_s, 0.5 * length_s), 1e4); }
+  [[nodiscard]] double least_lag_s() const { return std::min(1e-4 * unit_s, 0.1 * interval_s); }
+  /// Smallest start value of a time constant [s].
+  [[nodiscard]] double least_start_s() const { return std::min(1e-3 * unit_s, interval_s); }
 };
+
+/// Writes the times of the logs to the scene.
+void add_times(const std::vector<Log>& logs, Scene& scene) {
+  std::vector<Record> records;
+  for (const Log& log : logs) {
+    Record& record = records.emplace_back();
+    record.time_s = log.time_s;
+    record.finest_interval_s = record.mean_interval_s();
+    if (record.finest_interval_s > 0) scene.interval_s = std::min(scene.interval_s, record.finest_interval_s);
+    scene.length_s = std::max(scene.length_s, record.length_s());
+  }
+  scene.unit_s = time_unit_s(records);
+}
 
 Scene scene_of(const std::vector<Log>& logs) {
   Scene scene;
@@ -49,13 +77,14 @@ Scene scene_of(const std::vector<Log>& logs) {
       if (std::isfinite(s)) scene.highest_supply_kpa = std::max(scene.highest_supply_kpa, s);
     }
   }
+  add_times(logs, scene);
   return scene;
 }
 
 /// Converts the parameters of a valve to coordinates of the search, which have a magnitude of about 1. The
-/// delay [0.1 s], the dead band [kPa] and the share of the leak are the absolute values of their coordinates.
-/// The coordinate of a lag is the logarithm of its time constant. The coordinate of the limit is in units of
-/// 10 % of the highest pressure.
+/// delay [0.1 units of time], the dead band [kPa] and the share of the leak are the absolute values of their
+/// coordinates. The coordinate of a lag is the logarithm of its time constant. The coordinate of the limit is
+/// in units of 10 % of the highest pressure.
 class Coordinates {
  public:
   Coordinates(ValveParts parts, const Scene& scene) : parts_(parts), scene_(scene) {}
@@ -63,7 +92,8 @@ class Coordinates {
   [[nodiscard]] ValveStage stage_at(std::span<const double> t) const {
     ValveStage stage;
     std::size_t at = 0;
-    if (has(ValvePart::delay)) stage.delay_s = std::min(0.1 * std::abs(t[at++]), 5.0);
+    if (has(ValvePart::delay))
+      stage.delay_s = std::min(0.1 * scene_.unit_s * std::abs(t[at++]), scene_.most_delay_s());
     if (has(ValvePart::dead_band)) stage.band_kpa = std::abs(t[at++]);
     if (has(ValvePart::lag)) stage.filling_s = stage.venting_s = time_constant_s(t[at++]);
     if (has(ValvePart::two_ways)) stage.venting_s = time_constant_s(t[at++]);
@@ -77,8 +107,10 @@ class Coordinates {
 
   [[nodiscard]] std::vector<double> at(const ValveStage& stage) const {
     std::vector<double> t;
-    const auto logarithm = [](double time_constant_s) { return std::log(std::max(time_constant_s, 1e-3)); };
-    if (has(ValvePart::delay)) t.push_back(std::max(10 * stage.delay_s, 0.05));
+    const auto logarithm = [&](double time_constant_s) {
+      return std::log(std::max(time_constant_s, scene_.least_start_s()));
+    };
+    if (has(ValvePart::delay)) t.push_back(std::max(10 * stage.delay_s / scene_.unit_s, 0.05));
     if (has(ValvePart::dead_band)) t.push_back(std::max(stage.band_kpa, 0.01 * scene_.highest_kpa));
     if (has(ValvePart::lag)) t.push_back(logarithm(stage.filling_s));
     if (has(ValvePart::two_ways)) t.push_back(logarithm(stage.venting_s));
@@ -91,7 +123,9 @@ class Coordinates {
   }
 
  private:
-  static double time_constant_s(double t) { return std::clamp(std::exp(t), 1e-4, 10.0); }
+  [[nodiscard]] double time_constant_s(double t) const {
+    return std::clamp(std::exp(t), scene_.least_lag_s(), scene_.most_lag_s());
+  }
   [[nodiscard]] bool has(ValvePart part) const { return parts_.test(index_of(part)); }
 
   ValveParts parts_;
@@ -229,18 +263,46 @@ class Errors {
   std::vector<double> sample_time_s_;  ///< sampling time of each log
 };
 
+ValveStage start_at(double delay_s, double filling_s, double venting_s) {
+  ValveStage start;
+  start.delay_s = delay_s;
+  start.filling_s = filling_s;
+  start.venting_s = venting_s;
+  return start;
+}
+
 /// Returns the start points of the search: those in `fit.from`, or three default points.
-std::vector<ValveStage> starts_of(const ValveFit& fit) {
+std::vector<ValveStage> starts_of(const ValveFit& fit, const Scene& scene) {
   if (!fit.from.empty()) return fit.from;
   std::vector<ValveStage> starts;
-  for (const auto& [delay_s, filling_s, venting_s] :
-       {std::array{0.02, 0.1, 0.2}, std::array{0.1, 0.05, 0.1}, std::array{0.02, 0.5, 1.5}}) {
-    ValveStage& start = starts.emplace_back();
-    start.delay_s = delay_s;
-    start.filling_s = filling_s;
-    start.venting_s = venting_s;
-  }
+  for (const auto& [delay, filling, venting] :
+       {std::array{0.02, 0.1, 0.2}, std::array{0.1, 0.05, 0.1}, std::array{0.02, 0.5, 1.5}})
+    starts.push_back(start_at(delay * scene.unit_s, filling * scene.unit_s, venting * scene.unit_s));
   return starts;
+}
+
+/// Returns start points for valves of any speed that the logs can show. The time constants are powers of 10
+/// of the sampling interval, up to the largest time constant.
+std::vector<ValveStage> starts_of_any_speed(const Scene& scene) {
+  std::vector<ValveStage> starts;
+  for (double lag_s = scene.interval_s; lag_s < scene.most_lag_s(); lag_s *= 10)
+    starts.push_back(start_at(0.2 * lag_s, lag_s, lag_s));
+  return starts;
+}
+
+/// Returns the names of the fitted times that are at the upper limit of the search, with their values. A lag
+/// at the lower limit is no longer than 10 % of a sampling interval, so it has no effect.
+std::vector<std::string> limits_reached(const ValveStage& stage, ValveParts parts, const Scene& scene) {
+  std::vector<std::string> reached;
+  const auto add = [&](ValvePart part, const char* name, double value_s, double most_s) {
+    if (parts.test(index_of(part)) && value_s >= most_s)
+      reached.push_back(std::string(name) + " of " + significant(value_s, 3) + " s");
+  };
+  add(ValvePart::delay, "dead time", stage.delay_s, scene.most_delay_s());
+  add(ValvePart::lag, "lag during filling", stage.filling_s, scene.most_lag_s());
+  add(ValvePart::two_ways, "lag during venting", stage.venting_s, scene.most_lag_s());
+  add(ValvePart::second_lag, "second lag", stage.second_s, scene.most_lag_s());
+  return reached;
 }
 
 }  // namespace
@@ -263,25 +325,35 @@ ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit) {
     ValveStage stage = coordinates.stage_at(t);
     errors.evaluate(stage, r);
   };
-  const std::vector<ValveStage> starts = starts_of(fit);
-  std::vector<PlainMinimum> minima(starts.size());
-  parallel_for_idle(starts.size(), [&](std::size_t i) {
-    minima[i] = minimise_plain(residuals, errors.count(), coordinates.at(starts[i]), fit.tolerance);
-  });
-  ValveStage best;
-  double lowest = std::numeric_limits<double>::infinity();
-  std::vector<double> r(errors.count());
-  for (const PlainMinimum& minimum : minima) {
-    if (!(minimum.sum_of_squares < lowest)) continue;
-    lowest = minimum.sum_of_squares;
-    best = coordinates.stage_at(minimum.p);
-    errors.evaluate(best, r);
-    best.converged = true;
-  }
-  best.rmse_kpa = errors.rmse_kpa(best, true);
-  best.held_out_rmse_kpa = errors.rmse_kpa(best, false);
   const double range_kpa = scene.highest_kpa - scene.lowest_kpa;
-  best.rmse_percent = range_kpa > 0 ? 100 * best.rmse_kpa / range_kpa : 0;
+  const auto best_from = [&](const std::vector<ValveStage>& starts) {
+    std::vector<PlainMinimum> minima(starts.size());
+    parallel_for_idle(starts.size(), [&](std::size_t i) {
+      minima[i] = minimise_plain(residuals, errors.count(), coordinates.at(starts[i]), fit.tolerance);
+    });
+    ValveStage best;
+    double lowest = std::numeric_limits<double>::infinity();
+    std::vector<double> r(errors.count());
+    for (const PlainMinimum& minimum : minima) {
+      if (!(minimum.sum_of_squares < lowest)) continue;
+      lowest = minimum.sum_of_squares;
+      best = coordinates.stage_at(minimum.p);
+      errors.evaluate(best, r);
+      best.converged = true;
+    }
+    best.rmse_kpa = errors.rmse_kpa(best, true);
+    best.held_out_rmse_kpa = errors.rmse_kpa(best, false);
+    best.rmse_percent = range_kpa > 0 ? 100 * best.rmse_kpa / range_kpa : 0;
+    best.limits_reached = limits_reached(best, fit.parts, scene);
+    return best;
+  };
+  ValveStage best = best_from(starts_of(fit, scene));
+  // The default start points are those of a usual valve. From there, the search for a much faster or slower
+  // valve can end in a local minimum.
+  if (fit.from.empty() && (best.is_far_off() || !best.limits_reached.empty())) {
+    ValveStage other = best_from(starts_of_any_speed(scene));
+    if (other.rmse_kpa < (1 - limits::negligible_share) * best.rmse_kpa) best = std::move(other);
+  }
   return best;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "model/model.h"
@@ -63,6 +64,8 @@ struct ValveStage {
   double held_out_rmse_kpa = 0;  ///< RMSE of the samples that were left out of the fit; 0 if all samples were
                                  ///< fitted
   bool converged = false;
+  /// Names and values of the fitted times that are at the upper limit of the search; empty: none.
+  std::vector<std::string> limits_reached = {};
 
   /// Returns true if the model does not describe the valve, that is, if the RMSE exceeds 5 % of the range of
   /// the measured pressure.
@@ -79,13 +82,16 @@ struct ValveFit {
   bool held = false;  ///< true: the command is constant until the next sample
   /// Function that returns true for the samples that are fitted. Empty: all samples are fitted.
   std::function<bool(std::size_t log, std::size_t sample)> is_fitted = {};
-  std::vector<ValveStage> from = {};  ///< start points of the search; empty: three default start points
+  std::vector<ValveStage> from = {};  ///< start points of the search; empty: default start points
   double tolerance = 1e-12;           ///< relative change of the cost at which the search ends
 };
 
 /// Fits a valve model. Each log needs a pressure_kpa column. If the parts include supply_sag, each log also
 /// needs a supply_kpa column. The simulation of a log starts at its first measured pressure, even if the
-/// first command differs from this pressure.
+/// first command differs from this pressure. The unit of the default start points and of the limits is
+/// time_unit_s(). The limits of dead time and lag are at least 25 % and 50 % of the longest log. If the
+/// default start points lead to a limit or to a poor fit, the search is repeated from start points for valves
+/// of any speed.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit);
 /// Fits the parts of usual_valve_parts(). The fit uses the first part of each log; `share` is its length
 /// divided by the length of the log.
