@@ -118,7 +118,25 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   result.structure->valve = std::move(valve);
 }
 
+/// Warns about a drive whose largest magnitude is a pressure below zero. Envelopes, characteristic and
+/// pressure-dependent creep act only at positive pressures or displacements.
+void warn_of_vacuum(Identification& result) {
+  double lowest_kpa = 0, highest_kpa = 0;
+  for (const Record& record : result.records) {
+    const auto [low, high] = std::minmax_element(record.drive_kpa.begin(), record.drive_kpa.end());
+    lowest_kpa = std::min(lowest_kpa, *low);
+    highest_kpa = std::max(highest_kpa, *high);
+  }
+  if (!(-lowest_kpa > highest_kpa)) return;
+  result.warnings.push_back(
+      "the pressures reach from " + significant(lowest_kpa, 3) + " to " + significant(highest_kpa, 3) +
+      " kPa. The model can describe a nonlinear envelope, a nonlinear characteristic and pressure-dependent "
+      "creep only for positive pressures and displacements, so the error may be larger than necessary. Fit a "
+      "copy of the logs with inverted signs of pressure and displacement to see the difference");
+}
+
 void add_warnings(Identification& result) {
+  warn_of_vacuum(result);
   if (!result.converged) result.warnings.emplace_back("the search stopped before convergence");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
