@@ -33,7 +33,8 @@ std::string_view reason_of(Veto veto) {
     case Veto::size_beyond_range:
       return "the size of the effect exceeds the range of the signal";
     case Veto::other_size_uncertain:
-      return "the effect makes the size of another cause uncertain: its confidence interval then contains zero";
+      return "the effect makes the size of another cause uncertain: its confidence interval then contains "
+             "zero";
     case Veto::error_not_reduced:
       return "the effect does not reduce the error of the readings";
     case Veto::explains_too_little:
