@@ -196,10 +196,9 @@ class Judge {
     }
   }
 
-  /// Returns the cause of the effect with the largest error reduction, or of an effect that the data cannot
-  /// separate from it. The effect must meet all conditions of sysid/evidence/veto.h, and its error reduction
-  /// must exceed its tolerance. Returns nullopt if no effect qualifies. Stores the reasons why other effects
-  /// were rejected.
+  /// Returns the cause of the effect with the largest error reduction. The effect must meet all conditions of
+  /// sysid/evidence/veto.h, and its error reduction must exceed its tolerance. Returns nullopt if no effect
+  /// qualifies. Stores the reasons why other effects were rejected.
   [[nodiscard]] std::optional<ChangeCause> first_change(const CauseSearch& search,
                                                         std::vector<ScoredEffect> ranked,
                                                         JudgedChange& judged) const {
@@ -229,24 +228,12 @@ class Judge {
       return true;
     });
     const Ties ties = ties_in(readings, options_.seed);
-    if (ranked.empty()) return std::nullopt;
-    // A cause that explains significantly less than the best one is not tested, even if the best one is
-    // rejected: it would absorb an error that another cause explains.
-    const ScoredEffect best = ranked.front();
-    std::vector<ScoredEffect> smaller;
-    std::erase_if(ranked, [&](const ScoredEffect& each) {
-      const bool is_smaller = each.fit.fitted.effect.id != best.fit.fitted.effect.id && !ties(best, each);
-      if (is_smaller) smaller.push_back(each);
-      return is_smaller;
-    });
     for (; !ranked.empty(); ranked.erase(ranked.begin())) {
       put_fewest_numbers_first(ranked, ties);
       const Veto veto = vetoed(search, ranked.front());
       if (veto == Veto::none) return cause_of(search, ranked.front(), all, ties, judged);
       reject(ranked.front(), reason_of(veto));
     }
-    for (const ScoredEffect& each : smaller)
-      reject(each, "the error reduction is significantly smaller than that of " + best.fit.fitted.effect.id);
     return std::nullopt;
   }
 

@@ -11,7 +11,6 @@
 #include "sysid/changes/base.h"
 #include "sysid/changes/change_judge.h"
 #include "sysid/changes/change_report.h"
-#include "sysid/evidence/veto.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::several_causes_test {
@@ -86,29 +85,6 @@ TEST(SeveralCauses, ASmallErrorOfTheFingerCanBeAConsequenceOfThePressure) {
   EXPECT_EQ(causes_of_gain(slightly, unexplained), 1U);
   unexplained.readings.back().left_over = true;
   EXPECT_EQ(causes_of_gain(slightly, unexplained), 0U);
-}
-
-/// Only the first later log has a delay, so each cause that explains the delay predicts the second log badly.
-/// A cause that explains significantly less is not tested.
-TEST(SeveralCauses, ASmallerCauseDoesNotReplaceARejectedCause) {
-  constexpr double gain = 0.2 * 1.1;
-  const Base base =
-      fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
-  ChangeDiagnosis d;
-  judge_change(
-      base, false,
-      make_records({test::log_of({.gain = gain, .delay_s = 0.2}, 5), test::log_of({.gain = gain}, 6)}, {}),
-      {}, d);
-  EXPECT_TRUE(d.causes.empty());
-  const JudgedChange& judged = d.readings.front();
-  EXPECT_TRUE(judged.left_over);
-  const TriedCause& best = judged.tried.front();
-  EXPECT_EQ(best.rejected, reason_of(Veto::not_predictive)) << best.id;
-  std::size_t smaller = 0;
-  for (const TriedCause& tried : judged.tried) {
-    if (tried.rejected == "the error reduction is significantly smaller than that of " + best.id) ++smaller;
-  }
-  EXPECT_GT(smaller, 0U);
 }
 
 }  // namespace
