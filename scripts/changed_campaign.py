@@ -135,12 +135,14 @@ def page(rows, command, planned, variation, version):
     failed = sum(r["outcome"] == "failed" for r in rows)
     stopped = (" The campaign was stopped before its end, so the simulated cases are a random sample of the planned cases."
                if len(rows) < planned else "")
-    lines = [*results_page.head("Campaign of changed fingers", meaning(changed, still), version, command,
+    varied = any("variation" in r for r in rows)
+    title = "Campaign of changed fingers" + (" with run-to-run variation" if varied else "")
+    lines = [*results_page.head(title, meaning(changed, still), version, command,
                                 f"{len(rows)} of {planned} planned cases were simulated, and {failed} of these cases failed.{stopped}"),
              *changing_text(), "", variation, *absent_text(still), "", "| measure | required | measured (95 % interval) | number of cases |", "|---|---|---|---|"]
     for strength in sorted({r["strength"] for r in changed}):
         own = [r for r in changed if r["strength"] == strength]
-        wanted = None if any("variation" in r for r in rows) else REQUIRED.get(strength)
+        wanted = None if varied else REQUIRED.get(strength)
         for name, good in (("true cause named first", ("first",)), ("true cause named first, or outcome `twin`", ("first", "twin")),
                            ("true cause named or listed", ("first", "twin", "listed"))):
             lines.append(f"| strength {strength:g}: {name} | {f'at least {wanted} %' if wanted and len(good) == 1 else '-'} | "
