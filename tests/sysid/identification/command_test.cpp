@@ -252,7 +252,7 @@ TEST_F(Command, ErrorCode9999IsNotTreatedAsAUnitError) {
   EXPECT_EQ(run("identify --data codes.csv --out result"), 3);
   EXPECT_NE(read("err.txt").find("a code for a missing reading"), std::string::npos) << read("err.txt");
   EXPECT_EQ(read("err.txt").find("micrometres"), std::string::npos) << read("err.txt");
-  EXPECT_NE(read("err.txt").find("--missing 9999"), std::string::npos) << read("err.txt");
+  EXPECT_NE(read("err.txt").find("--missing-in displacement_mm=9999"), std::string::npos) << read("err.txt");
 }
 
 /// With a factor of 1e-3, the pressures are in MPa, and the log is accepted. With a factor of 1e-6, the log
