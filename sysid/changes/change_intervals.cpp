@@ -158,9 +158,9 @@ double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }
 
-/// The readings of the later runs may have another zero than the healthy runs. The zero can be an offset of
-/// the sensor or a displacement of the finger. The limits of the readings have the second meaning in one case
-/// and the first in the other, so their intervals contain both.
+/// Returns true for a position of the finger or a limit of the sensor. If the zero of the later runs differs
+/// from the zero of the healthy runs, the difference can be an offset of the sensor or a displacement of the
+/// finger. Only one of them shifts a position, so the interval must contain the value with and without it.
 bool is_position(const EffectNumber& number) {
   return number.name == "position_mm" || number.name == "upper_mm" || number.name == "lower_mm";
 }
