@@ -10,6 +10,7 @@ stop_rig() { if [ -n "$rig_pid" ]; then kill "$rig_pid" 2>/dev/null; wait "$rig_
 # start_rig [OPTION_OF_SOFTGRIP_RIG ...]  starts softgrip-rig on a free port with two fingers of the model
 # bench_twin
 start_rig() {
+  : >"$work/rig.log"  # otherwise the loop below may read the port of an earlier rig before the shell empties the file
   "$emulator" --model config/models/bench_twin.yaml --rig config/rig_tcp.yaml --tcp 0 "$@" >"$work/rig.log" 2>&1 &
   rig_pid=$!
   for _ in $(seq 100); do grep -q 'listening on' "$work/rig.log" && break; sleep 0.1; done
