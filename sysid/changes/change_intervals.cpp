@@ -137,10 +137,9 @@ Variance of_healthy_gain(const Base& base) {
 std::optional<Interval> interval(double value, double within, const Variance& between) {
   const double variance = within + between.value;
   if (!std::isfinite(variance) || !(variance > 0)) return std::nullopt;
-  double quantile = limits::deviate;
-  if (between.value > 0)
-    quantile =
-        std::sqrt(f_quantile(limits::probability, 1, square(variance / between.value) * between.freedom));
+  static_assert(limits::probability == 0.95);
+  const double quantile =
+      between.value > 0 ? t_quantile(square(variance / between.value) * between.freedom) : limits::deviate;
   const double half = quantile * std::sqrt(variance);
   return Interval{value - half, value + half};
 }
