@@ -167,12 +167,6 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   }
 }
 
-std::string cells_with(const TableColumn& column, double code) {
-  const auto count = std::count(column.values.begin(), column.values.end(), code);
-  return std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
-         document::shown(column.name, 40) + "' with " + shortest(code);
-}
-
 /// Interprets codes such as 999 in the mapped columns as missing values. A code applies only to the column in
 /// which it was found, because the same number can be a value of another column. Columns for which the user
 /// states codes are not searched.
@@ -181,7 +175,8 @@ void choose_codes(const ForeignTable& table, const Mapping& given, Proposal& pro
   for (const ColumnCode& code : given.missing_in) {
     const std::size_t index = column_of(code);
     if (index < table.columns.size() && taken(proposal.mapping, table, index))
-      proposal.notes.push_back(cells_with(table.columns[index], code.value) + " count as missing");
+      proposal.notes.push_back(cells_with(table.columns[index], code.value) + " with " +
+                               shortest(code.value) + " count as missing");
   }
   if (!given.missing.empty()) return;
   for (std::size_t index = 0; index < table.columns.size(); ++index) {
@@ -190,7 +185,7 @@ void choose_codes(const ForeignTable& table, const Mapping& given, Proposal& pro
     if (is_stated || !taken_by_a_value(proposal.mapping, table, index)) continue;
     for (const double code : sensor_codes(column.values)) {
       proposal.mapping.missing_in.push_back({word_of(table, index), code});
-      proposal.warnings.push_back(cells_with(column, code) +
+      proposal.warnings.push_back(cells_with(column, code) + " with " + shortest(code) +
                                   ", far from all other values, count as missing; to keep these values as "
                                   "readings, use --missing NA");
     }

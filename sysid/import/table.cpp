@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "document/problem.h"
 #include "sysid/import/cell_value.h"
 
 namespace softgrip::sysid {
@@ -90,6 +91,12 @@ std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
   problems.add(
       {file_, {1, 1}, {}, "the file does not contain two arrays of numbers with the same length", said});
   return std::nullopt;
+}
+
+std::string cells_with(const TableColumn& column, double value) {
+  const auto count = std::count(column.values.begin(), column.values.end(), value);
+  return std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
+         document::shown(column.name, 40) + "'";
 }
 
 }  // namespace softgrip::sysid

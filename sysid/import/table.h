@@ -104,6 +104,9 @@ struct TableOptions {
 /// this name, the number of the column counted from 1. Returns the number of columns if there is no such
 /// column or if several columns have this name.
 [[nodiscard]] std::size_t column_index(const ForeignTable& table, std::string_view word);
+
+/// Returns the number of cells with this value and the name of their column, such as "8 cells of 'tip (mm)'".
+[[nodiscard]] std::string cells_with(const TableColumn& column, double value);
 /// Returns the word that names a column in messages and options: its name or, if the name is missing or not
 /// unique, its number.
 [[nodiscard]] std::string word_of(const ForeignTable& table, std::size_t index);

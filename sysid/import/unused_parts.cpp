@@ -152,13 +152,9 @@ class UnusedParts {
       idle("--from-s or --to-s", "all samples are between these two times");
   }
 
-  /// Returns the number of cells that contain a code for a missing value, as text with the name of the
-  /// column. Returns "" if no cell contains the code.
-  [[nodiscard]] std::string cells_of(const TableColumn& column, double code) const {
-    const auto cells = std::count(column.values.begin(), column.values.end(), code);
-    if (cells == 0) return {};
-    return std::to_string(cells) + (cells == 1 ? " cell" : " cells") + " of '" +
-           document::shown(column.name, 40) + "'";
+  /// Returns true if the column contains a number, and a role other than the time uses the column.
+  [[nodiscard]] bool supplies(std::size_t column, double number) const {
+    return supplies_values(column) && std::ranges::count(table_.columns[column].values, number) > 0;
   }
 
   /// Returns true if a role other than the time uses the column.
@@ -177,8 +173,7 @@ class UnusedParts {
       if (const auto number = missing_number(word)) {
         std::vector<std::string> found;
         for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-          const std::string cells = supplies_values(i) ? cells_of(table_.columns[i], *number) : "";
-          if (!cells.empty()) found.push_back(cells);
+          if (supplies(i, *number)) found.push_back(cells_with(table_.columns[i], *number));
         }
         occurs = !found.empty();
         if (occurs)
@@ -193,10 +188,10 @@ class UnusedParts {
     for (const ColumnCode& code : mapping_.missing_in) {
       const std::size_t column = column_index(table_, code.column);
       const bool is_used = column < table_.columns.size() && supplies_values(column);
-      if (!is_used || cells_of(table_.columns[column], code.value).empty())
+      if (!is_used || !supplies(column, code.value))
         idle("--missing-in " + document::shown(code.column, 40) + "=" + shortest(code.value),
              is_used ? "no cell of this column contains this number"
-                     : "the import uses no values of such a column");
+                     : "the import does not use the values of this column");
     }
   }
 
