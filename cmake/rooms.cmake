@@ -70,7 +70,7 @@ softgrip_room(daemon/service
 # System identification: from logs to a model and to the cause of its error.
 # The limits of all decisions. This room is a single header.
 softgrip_room(sysid/limits)
-softgrip_room(sysid/logs USES base document model)
+softgrip_room(sysid/logs USES base document model sysid/limits)
 softgrip_room(sysid/recordings USES base document sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 # These libraries are linked PRIVATE, so other rooms are not compiled with their headers.

@@ -13,10 +13,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A previous command is assumed only if the first command differs from the initial pressure by more than
-/// this share of the range of the commands. Errors of a regulator and of a pressure sensor are smaller than
-/// this share.
-constexpr double far = 0.1;
 /// A previous command is assumed only if the measured pressure, while the first command is held, covers more
 /// than this share of the difference between the first command and the initial pressure. A working regulator
 /// covers a larger share.
@@ -28,7 +24,8 @@ constexpr double on_its_way = 0.5;
 std::size_t stands_for(const Log& log, double range_kpa) {
   const std::vector<double>& command = log.pressure_command_kpa;
   const auto stands = [&](std::size_t i) {
-    return i < log.size() && std::abs(command[i] - command.front()) < 0.5 * far * range_kpa;
+    return i < log.size() &&
+           std::abs(command[i] - command.front()) < 0.5 * different_command_share * range_kpa;
   };
   std::size_t count = 1;
   while (stands(count) || stands(count + 1)) ++count;
@@ -82,7 +79,7 @@ std::optional<double> by_pressure(const Log& log, double least_kpa, double most_
   const double range_kpa = most_kpa - least_kpa;
   const double before_kpa = log.pressure_kpa.front();
   const double way_kpa = log.pressure_command_kpa.front() - before_kpa;
-  if (!(std::abs(way_kpa) > far * range_kpa)) return {};
+  if (!(std::abs(way_kpa) > different_command_share * range_kpa)) return {};
   for (std::size_t i = 1; i < stands_for(log, range_kpa); ++i) {
     if ((log.pressure_kpa[i] - before_kpa) / way_kpa > on_its_way)
       return command_near(before_kpa, log.pressure_command_kpa, least_kpa, most_kpa);
@@ -97,7 +94,8 @@ std::optional<double> by_displacement(const Log& log, double least_kpa, double m
   const double motion_mm = median_mm(log, standing - at_an_end, standing) - median_mm(log, 0, at_an_end);
   if (!(std::abs(motion_mm) > step_share * range_of_medians_mm(log))) return {};
   const double before_kpa = motion_mm > 0 ? least_kpa : most_kpa;
-  if (!(std::abs(log.pressure_command_kpa.front() - before_kpa) > far * range_kpa)) return {};
+  if (!(std::abs(log.pressure_command_kpa.front() - before_kpa) > different_command_share * range_kpa))
+    return {};
   return before_kpa;
 }
 

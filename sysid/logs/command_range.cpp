@@ -9,8 +9,6 @@ namespace {
 /// Largest difference between the samples around an excursion, relative to its height. At the peak of a
 /// triangle or of a sine, this ratio is at least 1.
 constexpr double agreement = 0.1;
-/// Smallest distance of an excursion from the range of the other commands, relative to this range.
-constexpr double outside_share = 0.1;
 
 /// Returns true if one sample differs from the samples on both sides, and these samples agree.
 bool leaves_for_one_sample(std::span<const double> command, std::size_t at) {
@@ -42,8 +40,8 @@ CommandRange command_range(std::span<const double> command_kpa) {
     }
   }
   const double width = range.highest_kpa - range.lowest_kpa;
-  const double lowest = range.lowest_kpa - outside_share * width,
-               highest = range.highest_kpa + outside_share * width;
+  const double lowest = range.lowest_kpa - different_command_share * width,
+               highest = range.highest_kpa + different_command_share * width;
   for (const std::size_t i : pulses) {
     if (width > 0 && (command_kpa[i] < lowest || command_kpa[i] > highest)) {
       range.excursions.push_back(i);

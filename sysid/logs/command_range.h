@@ -1,11 +1,18 @@
 #pragma once
-// Finds single samples whose command is probably wrong.
+// Finds single samples whose command is probably wrong, and states when commands count as equal or different.
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace softgrip::sysid {
+
+/// Two commands are different if their distance exceeds this share of the range of the commands. Errors of a
+/// regulator and of a pressure sensor are smaller than this share.
+inline constexpr double different_command_share = 0.1;
+/// Largest change of a drive that counts as constant, as a share of the largest drive or of the range of the
+/// commands. The noise and the resolution of a pressure are smaller than this share.
+inline constexpr double steady_drive_share = 0.01;
 
 /// Range of the commands of a log without its excursions.
 struct CommandRange {

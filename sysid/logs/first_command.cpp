@@ -7,15 +7,17 @@
 #include <vector>
 
 #include "base/statistics.h"
+#include "sysid/limits/limits.h"
+#include "sysid/logs/command_range.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
 namespace {
 
-constexpr std::size_t most_wrong = 4;    // samples
-constexpr std::size_t fewest_held = 20;  // samples
-/// Two commands differ if their distance exceeds this share of the range of the commands.
-constexpr double differs_share = 0.1;
+/// Largest number of samples with a wrong command. With more samples, the first command counts as a pulse.
+constexpr std::size_t most_wrong = limits::fewest_occurrences - 1;
+/// Smallest number of samples with the next command.
+constexpr std::size_t fewest_held = limits::fewest_events;
 
 /// Returns the median of the readings from sample `first` on, under commands within 10 % of the range around
 /// a command; NaN if there is none.
@@ -23,7 +25,7 @@ double usual_reading_mm(const Log& log, std::size_t first, double command_kpa, d
   std::vector<double> readings;
   for (std::size_t i = first; i < log.size(); ++i) {
     if (std::isfinite(log.displacement_mm[i]) &&
-        std::abs(log.pressure_command_kpa[i] - command_kpa) <= differs_share * range_kpa)
+        std::abs(log.pressure_command_kpa[i] - command_kpa) <= different_command_share * range_kpa)
       readings.push_back(log.displacement_mm[i]);
   }
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
@@ -39,9 +41,10 @@ std::optional<WrongFirstCommand> wrong_first_command(const Log& log) {
   const auto [low, high] = std::ranges::minmax(std::span(command).subspan(samples));
   const double range_kpa = high - low;
   const WrongFirstCommand found{samples, command.front(), command[samples]};
-  if (!(std::abs(found.command_kpa - found.next_kpa) > differs_share * range_kpa)) return {};
+  if (!(std::abs(found.command_kpa - found.next_kpa) > different_command_share * range_kpa)) return {};
   std::size_t standing = samples;
-  while (standing < log.size() && std::abs(command[standing] - found.next_kpa) <= 0.01 * range_kpa)
+  while (standing < log.size() &&
+         std::abs(command[standing] - found.next_kpa) <= steady_drive_share * range_kpa)
     ++standing;
   if (standing < samples + fewest_held || standing == log.size()) return {};
   std::vector<double> first;

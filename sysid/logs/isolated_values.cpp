@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/numbers.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -72,6 +74,17 @@ double usual_span(const std::vector<double>& column) {
   if (sorted.empty()) return 0;
   std::sort(sorted.begin(), sorted.end());
   return sorted[sorted.size() - 1 - sorted.size() / 20] - sorted[sorted.size() / 20];
+}
+
+std::string listed(const std::vector<double>& column, const std::vector<double>& time_s,
+                   const std::vector<std::size_t>& samples, std::string_view unit) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, samples.size()); ++k)
+    text += (k == 0 ? "" : ", ") + significant(column[samples[k]]) + " " + std::string(unit) + " at " +
+            significant(time_s[samples[k]]) + " s";
+  if (samples.size() > most) text += " and " + std::to_string(samples.size() - most) + " more";
+  return text;
 }
 
 }  // namespace softgrip::sysid

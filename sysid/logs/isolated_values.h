@@ -3,6 +3,8 @@
 // the noise or a motion permits.
 
 #include <cstddef>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace softgrip::sysid {
@@ -38,8 +40,18 @@ struct IsolatedValue {
 /// @param noise  standard deviation of the noise of the values.
 [[nodiscard]] std::vector<IsolatedValue> isolated_values(const std::vector<double>& column, double noise);
 
+/// Lower limit of the noise of a column as a share of its span. It is used if the values contain almost no
+/// noise.
+inline constexpr double least_noise_share = 1e-3;
+
 /// Returns the distance from the 5 % quantile to the 95 % quantile of the finite values; 0 if there are none.
 /// Single wrong values do not change this distance.
 [[nodiscard]] double usual_span(const std::vector<double>& column);
+
+/// Returns a list of values with their times, such as "500 kPa at 20 s, 0 kPa at 21 s". The list contains at
+/// most three values, and then the number of the other ones (" and 4 more").
+/// @param samples  indices of the values in `column` and `time_s`.
+[[nodiscard]] std::string listed(const std::vector<double>& column, const std::vector<double>& time_s,
+                                 const std::vector<std::size_t>& samples, std::string_view unit);
 
 }  // namespace softgrip::sysid

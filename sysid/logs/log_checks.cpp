@@ -1,3 +1,5 @@
+#include "sysid/logs/log_header.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +11,6 @@
 #include "sysid/logs/first_command.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/isolated_values.h"
-#include "sysid/logs/log_header.h"
 #include "sysid/logs/sensor_codes.h"
 #include "sysid/logs/signal_gaps.h"
 #include "sysid/logs/unit_factors.h"
@@ -63,8 +64,8 @@ class Check {
     intervals();
     missing_readings();
     missing_pressure();
-    frozen("the readings", log_.displacement_mm, in_unit(" mm"));
-    frozen("the measured pressure", log_.pressure_kpa, " kPa");
+    frozen("the readings remain", log_.displacement_mm, in_unit(" mm"));
+    frozen("the measured pressure remains", log_.pressure_kpa, " kPa");
     if (options.require_motion) excitation();
     clipping(options.clipped_share_refused);
   }
@@ -208,30 +209,23 @@ class Check {
   /// otherwise follow them. The pressure may follow a pulse of the command, so a distance that is not larger
   /// than the change of the command is no error.
   void isolated_pressures() {
-    constexpr double least_noise_share = 1e-3;
-    constexpr std::size_t named = 3;
     std::vector<double>& pressure = log_.pressure_kpa;
     const double noise_kpa =
         std::max(white_noise_of(log_.time_s, pressure), least_noise_share * usual_span(pressure));
-    std::string first;
-    std::size_t at = log_.size(), count = 0;
+    std::vector<std::size_t> wrong;
     for (const IsolatedValue& found : isolated_values(pressure, noise_kpa)) {
       const std::size_t from = found.sample - std::min(found.sample, isolated_reach);
       const auto nearby = std::span(log_.pressure_command_kpa).subspan(from);
       const auto [low, high] =
           std::ranges::minmax(nearby.first(std::min(nearby.size(), 2 * isolated_reach + 1)));
-      if (std::abs(found.distance) <= high - low) continue;
-      if (++count <= named)
-        first += (count > 1 ? ", " : "") + significant(pressure[found.sample]) + " kPa at " +
-                 significant(log_.time_s[found.sample]) + " s";
-      at = std::min(at, found.sample);
-      pressure[found.sample] = std::numeric_limits<double>::quiet_NaN();
+      if (std::abs(found.distance) > high - low) wrong.push_back(found.sample);
     }
-    if (count == 0) return;
-    if (count > named) first += " and " + std::to_string(count - named) + " more";
-    note(at, std::to_string(count) + " of " + std::to_string(pressure.size()) +
-                 (count == 1 ? " measured pressures is isolated" : " measured pressures are isolated") +
-                 ", removed: " + first);
+    if (wrong.empty()) return;
+    note(wrong.front(),
+         std::to_string(wrong.size()) + " of " + std::to_string(pressure.size()) +
+             (wrong.size() == 1 ? " measured pressures is isolated" : " measured pressures are isolated") +
+             ", removed: " + listed(pressure, log_.time_s, wrong, "kPa"));
+    for (const std::size_t i : wrong) pressure[i] = std::numeric_limits<double>::quiet_NaN();
   }
 
   void missing_readings() {
@@ -258,12 +252,11 @@ class Check {
   }
 
   /// Notes a column that keeps one value while the command changes. clipping() reports extreme values.
-  void frozen(const std::string& name, const std::vector<double>& values, const std::string& unit) {
+  /// @param remains  name of the column and the verb.
+  void frozen(const std::string& remains, const std::vector<double>& values, const std::string& unit) {
     const auto range = frozen_range(log_, values);
     if (!range) return;
-    const bool is_pressure = &values == &log_.pressure_kpa;
-    note(range->first, name + (is_pressure ? " remains" : " remain") + " at exactly " +
-                           significant(values[range->first], 6) + unit + " from " +
+    note(range->first, remains + " at exactly " + significant(values[range->first], 6) + unit + " from " +
                            significant(log_.time_s[range->first], 6) + " s to " +
                            significant(log_.time_s[range->last], 6) + " s, while the command changes by " +
                            significant(range->change_kpa, 3) +

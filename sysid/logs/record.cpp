@@ -13,6 +13,8 @@
 #include "model/blocks/sensor_noise.h"
 #include "model/catalogue.h"
 #include "model/named.h"
+#include "sysid/limits/limits.h"
+#include "sysid/logs/command_range.h"
 #include "sysid/logs/input_smoothing.h"
 
 namespace softgrip::sysid {
@@ -33,58 +35,62 @@ void fill_missing(std::vector<double>& values) {
   for (std::size_t j = last + 1; j < values.size() && last < values.size(); ++j) values[j] = values[last];
 }
 
-/// Returns true if the readings at the beginning show that the zero of the sensor has no offset. They are the
-/// readings before the drive changes. Their median must not differ significantly from 0, so that a single
-/// wrong reading does not determine the offset. If there is only one such reading, the step to the next
-/// reading must not be larger than all other steps.
-bool begins_at_zero(const Record& record) {
-  constexpr double constant_share = 0.01;  // of the largest drive
+/// Returns the readings before the drive changes.
+std::vector<double> readings_before_motion(const Record& record) {
   std::vector<double> readings;
-  std::size_t next = 0;
-  for (; next < record.size(); ++next) {
-    const bool stands =
-        std::abs(record.drive_kpa[next] - record.drive_kpa.front()) <= constant_share * record.largest_kpa;
-    if (!stands && !readings.empty()) break;
-    if (std::isfinite(record.reading_mm[next])) readings.push_back(record.reading_mm[next]);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (std::abs(record.drive_kpa[i] - record.drive_kpa.front()) > steady_drive_share * record.largest_kpa)
+      break;
+    if (std::isfinite(record.reading_mm[i])) readings.push_back(record.reading_mm[i]);
   }
-  if (readings.empty()) return false;
-  double error_mm = fast_noise_mm(record);
-  if (readings.size() > 1) {
-    // The standard error of a median is sqrt(pi / 2) times the standard error of a mean.
-    error_mm *= std::sqrt(std::numbers::pi / 2 / static_cast<double>(readings.size()));
-  } else {
-    std::vector<double> all;
-    std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(all),
-                 [](double y) { return std::isfinite(y); });
-    double largest_mm = 0;
-    for (std::size_t i = 2; i < all.size(); ++i)
-      largest_mm = std::max(largest_mm, std::abs(all[i] - all[i - 1]));
-    if (all.size() > 2 && std::abs(all[1] - all[0]) > largest_mm) return false;
-  }
-  return std::abs(median_of(std::span(readings))) < std::max(4 * error_mm, 1e-3 * record.span_mm);
+  return readings;
+}
+
+/// Returns the standard error of the median of several readings [mm], which is sqrt(pi / 2) times the
+/// standard error of their mean.
+double median_error_mm(const Record& record, std::size_t readings) {
+  return std::sqrt(std::numbers::pi / 2 / static_cast<double>(readings)) * fast_noise_mm(record);
+}
+
+/// Returns true if no step between neighbouring readings is larger than the first one.
+bool begins_with_the_largest_step(const Record& record) {
+  std::vector<double> readings;
+  std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(readings),
+               [](double y) { return std::isfinite(y); });
+  double largest_mm = 0;
+  for (std::size_t i = 2; i < readings.size(); ++i)
+    largest_mm = std::max(largest_mm, std::abs(readings[i] - readings[i - 1]));
+  return readings.size() > 2 && std::abs(readings[1] - readings[0]) > largest_mm;
+}
+
+/// Returns true if the readings at the beginning show that the zero of the sensor has no offset. The median
+/// of the readings before the drive changes must not differ significantly from 0, so that a single wrong
+/// reading does not determine the offset. If there is at most one such reading, the step from the first to
+/// the second reading must not be larger than all other steps.
+bool begins_at_zero(const Record& record) {
+  const double tolerance_mm = 1e-3 * record.span_mm;
+  std::vector<double> readings = readings_before_motion(record);
+  if (readings.size() > 1)
+    return std::abs(median_of(std::span(readings))) <
+           std::max(4 * median_error_mm(record, readings.size()), tolerance_mm);
+  const auto first = std::find_if(record.reading_mm.begin(), record.reading_mm.end(),
+                                  [](double y) { return std::isfinite(y); });
+  return first != record.reading_mm.end() && !begins_with_the_largest_step(record) &&
+         std::abs(*first) < std::max(4 * fast_noise_mm(record), tolerance_mm);
 }
 
 /// Returns true if the record begins with a rest almost without pressure: the drive stays constant for 20
 /// readings, and the readings are steady. A converter or a pressure sensor with an offset shows a small
 /// pressure at such a rest.
 bool rests_almost_without_pressure(const Record& record) {
-  constexpr double constant_share = 0.01, low_share = 0.05;  // of the largest drive
-  constexpr std::size_t fewest = 20;
-  constexpr double steady_share = 0.01;  // of the span
-  if (std::abs(record.drive_kpa.front()) > low_share * record.largest_kpa) return false;
-  std::vector<double> readings;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (std::abs(record.drive_kpa[i] - record.drive_kpa.front()) > constant_share * record.largest_kpa) break;
-    if (std::isfinite(record.reading_mm[i])) readings.push_back(record.reading_mm[i]);
-  }
-  if (readings.size() < fewest) return false;
-  const auto earlier = std::span(readings).first(readings.size() / 2);
-  const auto later = std::span(readings).last(readings.size() / 2);
-  // The standard error of a median is sqrt(pi / 2) times the standard error of a mean.
-  const double error_mm =
-      std::sqrt(std::numbers::pi / static_cast<double>(earlier.size())) * fast_noise_mm(record);
-  return std::abs(median_of(later) - median_of(earlier)) <
-         std::max(4 * error_mm, steady_share * record.span_mm);
+  if (std::abs(record.drive_kpa.front()) > limits::rest_share * record.largest_kpa) return false;
+  std::vector<double> readings = readings_before_motion(record);
+  if (readings.size() < limits::fewest_events) return false;
+  const std::size_t half = readings.size() / 2;
+  const double change_mm =
+      median_of(std::span(readings).last(half)) - median_of(std::span(readings).first(half));
+  return std::abs(change_mm) < std::max(4 * std::numbers::sqrt2 * median_error_mm(record, half),
+                                        limits::negligible_share * record.span_mm);
 }
 
 Record make_record(const Log& log, const RecordOptions& options, double campaign_time_s) {
@@ -120,8 +126,7 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   }
 
   record.start = options.start;
-  constexpr double next_to_nothing = 0.01;
-  const bool pressurised = std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa;
+  const bool pressurised = std::abs(record.drive_kpa.front()) > steady_drive_share * record.largest_kpa;
   record.start_unknown =
       options.start == Start::unknown ||
       (options.start == Start::automatic && pressurised && !rests_almost_without_pressure(record));
@@ -148,16 +153,20 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
   return records;
 }
 
-double time_unit_s(const std::vector<Record>& records) {
+double time_unit_s(double interval_s, double length_s) {
   constexpr double intervals = 10, share = 0.5;
+  const bool resolves_1_s = intervals * interval_s <= 1 && share * length_s >= 1;
+  return resolves_1_s || !(length_s > 0) ? 1 : std::sqrt(interval_s * length_s);
+}
+
+double time_unit_s(const std::vector<Record>& records) {
   double interval_s = std::numeric_limits<double>::infinity(), length_s = 0;
   for (const Record& record : records) {
     if (record.size() < 2 || !(record.finest_interval_s > 0)) continue;
     interval_s = std::min(interval_s, step_duration_s(record.finest_interval_s));
     length_s = std::max(length_s, record.length_s());
   }
-  const bool resolves_1_s = intervals * interval_s <= 1 && share * length_s >= 1;
-  return resolves_1_s || !(length_s > 0) ? 1 : std::sqrt(interval_s * length_s);
+  return time_unit_s(interval_s, length_s);
 }
 
 double pressure_unit_kpa(const std::vector<Record>& records) {

@@ -112,6 +112,8 @@ struct Record {
 /// interval and the length of the longest record.
 /// @param records  at least one record.
 [[nodiscard]] double time_unit_s(const std::vector<Record>& records);
+/// Returns the unit of time for a smallest sampling interval and the length of the longest log [s].
+[[nodiscard]] double time_unit_s(double interval_s, double length_s);
 
 /// Returns the unit of pressure in which a fit searches for gains and rates per kPa [kPa]. The unit is 1 kPa
 /// if the largest pressure is at least 20 kPa, as it is for soft fingers. Otherwise the unit is 5 % of the

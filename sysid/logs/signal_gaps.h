@@ -10,12 +10,13 @@
 
 namespace softgrip::sysid {
 
-/// A range of samples without information from a column is a gap if it fulfils three conditions: it is longer
-/// than this duration [s], ...
+// A range without information from a column is a gap only if it exceeds all three of the following limits.
+
+/// Shortest gap [s]. A finger hardly moves in a shorter time.
 inline constexpr double shortest_gap_s = 0.5;
-/// ... it is longer than this number of usual intervals of the column, ...
+/// Shortest gap in usual intervals of the column.
 inline constexpr double shortest_gap_intervals = 20;
-/// ... and the command changes in the range by more than this share of its range in the log.
+/// Smallest change of the command in a gap, as a share of the range of the commands in the log.
 inline constexpr double least_gap_change = 0.02;
 
 /// A gap in a measured column.

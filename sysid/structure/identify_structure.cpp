@@ -158,17 +158,19 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   const bool measured =
       std::all_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
   if (options.record.drive == Drive::measured && !measured) return Failure("a log has no measured pressure");
-  const auto with_gap =
-      std::find_if(logs.begin(), logs.end(), [](const Log& log) { return pressure_gap(log); });
-  const bool two_stages = options.record.drive == Drive::command && measured && with_gap == logs.end();
+  std::string gap;
+  for (const Log& log : logs) {
+    const auto found = measured && gap.empty() ? pressure_gap(log) : std::nullopt;
+    if (found) gap = log.name + ": " + gap_sentence(log, *found);
+  }
+  const bool two_stages = options.record.drive == Drive::command && measured && gap.empty();
   RecordOptions record = options.record;
   if (two_stages) record.drive = Drive::measured;
 
   const std::vector<Record> whole = make_records(logs, record);
   Identification result;
-  if (measured && with_gap != logs.end())
-    result.warnings.push_back(with_gap->name + ": " + gap_sentence(*with_gap, *pressure_gap(*with_gap)) +
-                              ". The fit uses the command and no separate model of the valve");
+  if (!gap.empty())
+    result.warnings.push_back(gap + ". The fit uses the command and no separate model of the valve");
   result.records = with_first_readings(whole, options.fit_share);
   std::size_t readings = 0;
   for (const Record& each : result.records) readings += each.readings;

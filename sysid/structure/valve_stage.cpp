@@ -54,15 +54,13 @@ struct Scene {
 
 /// Writes the times of the logs to the scene.
 void add_times(const std::vector<Log>& logs, Scene& scene) {
-  std::vector<Record> records;
   for (const Log& log : logs) {
-    Record& record = records.emplace_back();
-    record.time_s = log.time_s;
-    record.finest_interval_s = record.mean_interval_s();
-    if (record.finest_interval_s > 0) scene.interval_s = std::min(scene.interval_s, record.finest_interval_s);
-    scene.length_s = std::max(scene.length_s, record.length_s());
+    if (log.size() < 2) continue;
+    const double length_s = log.time_s.back() - log.time_s.front();
+    scene.interval_s = std::min(scene.interval_s, length_s / static_cast<double>(log.size() - 1));
+    scene.length_s = std::max(scene.length_s, length_s);
   }
-  scene.unit_s = time_unit_s(records);
+  scene.unit_s = time_unit_s(step_duration_s(scene.interval_s), scene.length_s);
 }
 
 Scene scene_of(const std::vector<Log>& logs) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <set>
+#include <span>
 
 #include "document/problem.h"
 #include "sysid/logs/command_before.h"
@@ -60,14 +61,15 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
     options.output_unit_of = required->of;
   }
   sysid::Campaign campaign = sysid::read_campaign(paths, problems, options);
-  for (const sysid::Log& log : campaign.logs) {
-    if (input.drive == "measured" && log.pressure_kpa.empty()) {
+  const auto driving = input.drive == "measured" ? std::span(campaign.logs) : std::span<sysid::Log>();
+  for (const sysid::Log& log : driving) {
+    if (log.pressure_kpa.empty()) {
       problems.add({log.path,
                     {1, 1},
                     {},
                     "the log has no column 'pressure_kpa', but --drive measured requires this column",
                     {}});
-    } else if (const auto gap = sysid::pressure_gap(log); input.drive == "measured" && gap) {
+    } else if (const auto gap = sysid::pressure_gap(log)) {
       problems.add({log.path,
                     {1, 1},
                     {},

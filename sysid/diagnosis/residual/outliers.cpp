@@ -12,6 +12,7 @@
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/command_range.h"
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/record.h"
 #include "sysid/logs/sensor_codes.h"
@@ -120,7 +121,6 @@ void hide_far_ends(Record& record, OutlierEvidence& evidence) {
 /// neither these readings nor the pressure change. A sensor may deliver its last value from before the start.
 void hide_isolated_ends(Record& record, double noise_mm, OutlierEvidence& evidence) {
   constexpr std::size_t beside = 4;
-  constexpr double constant_share = 0.01;  // of the largest pressure
   const Readings readings = readings_of(record);
   const std::size_t count = readings.mm.size();
   if (count < 10 * beside) return;
@@ -134,7 +134,7 @@ void hide_isolated_ends(Record& record, double noise_mm, OutlierEvidence& eviden
       low_kpa = std::min(low_kpa, drive_kpa);
       high_kpa = std::max(high_kpa, drive_kpa);
     }
-    if (high_kpa - low_kpa > constant_share * record.largest_kpa) continue;
+    if (high_kpa - low_kpa > steady_drive_share * record.largest_kpa) continue;
     const auto [lowest, highest] = std::minmax_element(near.begin(), near.end());
     const double spread_mm = *highest - *lowest;
     const double distance_mm = readings.mm[place(0)] - median_of(std::span<double>(near));
@@ -149,10 +149,6 @@ void hide_isolated(Record& record, double noise_mm, OutlierEvidence& evidence) {
     hide(record, found.sample, found.distance, evidence);
 }
 
-constexpr std::size_t named_readings = 3;
-/// Lower limit of the noise as a share of the span. It is used if the readings contain almost no noise.
-constexpr double least_noise_share = 1e-3;
-
 double noise_of(const std::vector<Record>& records) {
   double noise_mm = measured_noise_mm(records);
   for (const Record& record : records)
@@ -161,17 +157,11 @@ double noise_of(const std::vector<Record>& records) {
 }
 
 std::string sentence_of(const Log& log, const std::vector<std::size_t>& wrong) {
-  std::string first;
-  for (std::size_t i = 0; i < std::min(wrong.size(), named_readings); ++i) {
-    first += (i == 0 ? "" : ", ") + significant(log.displacement_mm[wrong[i]]) + " " +
-             std::string(model::name_of(log.output_unit)) + " at " + significant(log.time_s[wrong[i]]) + " s";
-  }
-  if (wrong.size() > named_readings)
-    first += " and " + std::to_string(wrong.size() - named_readings) + " more";
   const auto readings = std::count_if(log.displacement_mm.begin(), log.displacement_mm.end(),
                                       [](double value) { return std::isfinite(value); });
   return log.name + ": " + std::to_string(wrong.size()) + " of " + std::to_string(readings) +
-         (wrong.size() == 1 ? " readings is an outlier" : " readings are outliers") + ", removed: " + first;
+         (wrong.size() == 1 ? " readings is an outlier" : " readings are outliers") +
+         ", removed: " + listed(log.displacement_mm, log.time_s, wrong, model::name_of(log.output_unit));
 }
 
 }  // namespace

@@ -58,5 +58,13 @@ TEST(UsualSpan, IsIndependentOfSingleWrongValues) {
   EXPECT_EQ(usual_span({}), 0);
 }
 
+TEST(ListedValues, AreAtMostThreeAndTheNumberOfTheOtherOnes) {
+  const std::vector<double> values{500, 1, 0, 2.5, 7}, time_s{0, 0.02, 0.04, 0.06, 0.08};
+  EXPECT_EQ(listed(values, time_s, {0}, "kPa"), "500 kPa at 0 s");
+  EXPECT_EQ(listed(values, time_s, {0, 2, 3}, "mm"), "500 mm at 0 s, 0 mm at 0.04 s, 2.5 mm at 0.06 s");
+  EXPECT_EQ(listed(values, time_s, {0, 1, 2, 3, 4}, "kPa"),
+            "500 kPa at 0 s, 1 kPa at 0.02 s, 0 kPa at 0.04 s and 2 more");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::isolated_values_test

@@ -47,8 +47,23 @@ TEST(RecordOffset, IsNotDeterminedByOneWrongReading) {
   EXPECT_FALSE(has_offset(log)) << "only the first reading is not 0";
 }
 
+/// Returns every tenth sample of the log, so that the command changes from the first sample to the second.
+Log every_tenth(const Log& log) {
+  Log few;
+  for (std::size_t i = 0; i < log.size(); i += 10) {
+    few.time_s.push_back(log.time_s[i]);
+    few.pressure_command_kpa.push_back(log.pressure_command_kpa[i]);
+    few.displacement_mm.push_back(log.displacement_mm[i]);
+  }
+  return few;
+}
+
 TEST(RecordOffset, MotionFromTheFirstSampleIsNoOffset) {
   EXPECT_FALSE(has_offset(beginning_at_rest(0, 0)));
+  EXPECT_FALSE(has_offset(every_tenth(beginning_at_rest(0, 0))));
+  Log shifted = every_tenth(beginning_at_rest(0, 5));
+  shifted.displacement_mm[0] = 0;
+  EXPECT_TRUE(has_offset(shifted)) << "the step to the second reading is larger than all other steps";
 }
 
 bool has_unknown_start(const Log& log) {

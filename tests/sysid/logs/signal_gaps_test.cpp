@@ -85,5 +85,16 @@ TEST(SignalGaps, ReadingsOfLowResolutionAreNotFrozen) {
   EXPECT_FALSE(frozen(0.001, 130, 145)) << "only 15 equal readings";
 }
 
+TEST(SignalGaps, ValuesOfASlowSensorAreNotFrozen) {
+  const auto slow = [](std::size_t last) {
+    Log log = triangles(0.001);
+    for (std::size_t i = 0; i < log.size(); ++i)
+      log.displacement_mm[i] = log.displacement_mm[i >= 120 && i < last ? 120 : i - i % 10];
+    return frozen_range(log, log.displacement_mm);
+  };
+  EXPECT_FALSE(slow(270)) << "15 times the usual number of equal values";
+  EXPECT_TRUE(slow(420)) << "30 times the usual number of equal values";
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::signal_gaps_test
