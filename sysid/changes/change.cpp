@@ -65,6 +65,9 @@ std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>
 
 void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
           std::vector<std::string>& warnings) {
+  for (const std::vector<Log>* const logs : {&healthy, &later}) {
+    for (std::string& sentence : corrections_of(*logs)) warnings.push_back(std::move(sentence));
+  }
   const auto among = repetition_warnings(later, healthy, "the healthy log",
                                          "The comparison of a log with itself cannot show a change");
   warnings.insert(warnings.end(), among.begin(), among.end());

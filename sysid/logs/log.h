@@ -35,6 +35,7 @@ struct OtherColumn {
 struct LogNote {
   int line = 0;  ///< first line of the CSV text that the note concerns; 0: the note concerns the whole log
   std::string text;
+  bool corrects = false;  ///< true: values of the log were replaced or removed, so a warning repeats the note
 };
 
 /// Statistics of the sampling intervals of a log.

@@ -9,6 +9,7 @@
 
 #include "base/numbers.h"
 #include "sysid/logs/first_command.h"
+#include "sysid/logs/first_readings.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/sensor_codes.h"
@@ -60,6 +61,7 @@ class Check {
     magnitudes(options.command_unit);
     if (!options.need_readings) return;
     first_command();
+    first_readings();
     isolated_pressures();
     intervals();
     missing_readings();
@@ -81,8 +83,11 @@ class Check {
     }
     problems_.add(std::move(problem));
   }
-  void note(std::size_t sample, std::string text) {
-    log_.notes.push_back({sample < source_.line.size() ? source_.line[sample] : 0, std::move(text)});
+  void note(std::size_t sample, std::string text) { add_note(sample, std::move(text), false); }
+  void note_correction(std::size_t sample, std::string text) { add_note(sample, std::move(text), true); }
+  void add_note(std::size_t sample, std::string text, bool corrects) {
+    log_.notes.push_back(
+        {sample < source_.line.size() ? source_.line[sample] : 0, std::move(text), corrects});
   }
 
   [[nodiscard]] std::string in_unit(std::string_view text) const {
@@ -199,10 +204,21 @@ class Check {
     const std::optional<WrongFirstCommand> wrong = wrong_first_command(log_);
     if (!wrong) return;
     std::fill_n(log_.pressure_command_kpa.begin(), wrong->samples, wrong->next_kpa);
-    note(0, "the log begins with a command of " + significant(wrong->command_kpa) + " kPa in " +
-                std::to_string(wrong->samples) + (wrong->samples == 1 ? " sample" : " samples") +
-                ", but the readings belong to the next command, " + significant(wrong->next_kpa) +
-                " kPa, which was used instead");
+    note_correction(0, "the log begins with a command of " + significant(wrong->command_kpa) + " kPa in " +
+                           std::to_string(wrong->samples) + (wrong->samples == 1 ? " sample" : " samples") +
+                           ", but the readings belong to the next command, " + significant(wrong->next_kpa) +
+                           " kPa, which was used instead");
+  }
+
+  /// Removes wrong readings at the beginning, because the initial state is estimated from the first readings.
+  void first_readings() {
+    const std::optional<WrongFirstReadings> wrong = wrong_first_readings(log_);
+    if (!wrong) return;
+    note_correction(0, (wrong->count == 1 ? "the first reading was"
+                                          : "the first " + std::to_string(wrong->count) + " readings were") +
+                           " removed: the jump from " + significant(wrong->last_mm) + " to " +
+                           significant(wrong->next_mm) + in_unit(" mm has no cause in the pressure"));
+    std::fill_n(log_.displacement_mm.begin(), wrong->samples, std::numeric_limits<double>::quiet_NaN());
   }
 
   /// Removes isolated values of the measured pressure. A fit with the measured pressure as its input would
@@ -221,10 +237,10 @@ class Check {
       if (std::abs(found.distance) > high - low) wrong.push_back(found.sample);
     }
     if (wrong.empty()) return;
-    note(wrong.front(),
-         std::to_string(wrong.size()) + " of " + std::to_string(pressure.size()) +
-             (wrong.size() == 1 ? " measured pressures is isolated" : " measured pressures are isolated") +
-             ", removed: " + listed(pressure, log_.time_s, wrong, "kPa"));
+    note_correction(wrong.front(), std::to_string(wrong.size()) + " of " + std::to_string(pressure.size()) +
+                                       (wrong.size() == 1 ? " measured pressures is isolated"
+                                                          : " measured pressures are isolated") +
+                                       ", removed: " + listed(pressure, log_.time_s, wrong, "kPa"));
     for (const std::size_t i : wrong) pressure[i] = std::numeric_limits<double>::quiet_NaN();
   }
 

@@ -293,9 +293,19 @@ std::vector<std::string> repetition_warnings(const std::vector<Log>& logs, const
   return warnings;
 }
 
+std::vector<std::string> corrections_of(const std::vector<Log>& logs) {
+  std::vector<std::string> sentences;
+  for (const Log& log : logs) {
+    for (const LogNote& note : log.notes) {
+      if (note.corrects) sentences.push_back(log.name + ": " + note.text);
+    }
+  }
+  return sentences;
+}
+
 std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& logs,
                                                      std::string_view repeated) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = corrections_of(logs);
   std::vector<double> gains;
   std::vector<double> usual_gains;
   for (const Log& log : logs) {

@@ -29,13 +29,17 @@ enum class ReadingSign { kept, reversed };
                                                              const PressureColumn& column = {},
                                                              ReadingSign sign = ReadingSign::kept);
 
+/// Returns the notes about values that were replaced or removed when the logs were read. Each one begins with
+/// the name of its log.
+[[nodiscard]] std::vector<std::string> corrections_of(const std::vector<Log>& logs);
+
 /// The effect of repeated samples on a result with confidence intervals.
 inline constexpr std::string_view repeated_in_fit =
     "Repeated samples make the confidence intervals too narrow";
 
-/// Returns the warnings about each log. If there are several logs, each warning begins with the name of the
-/// log. Also reports logs that repeat the samples of an earlier log, and logs whose motion differs from the
-/// motion of the other logs by the ratio of two units.
+/// Returns the corrections and the warnings about each log. If there are several logs, each warning begins
+/// with the name of the log. Also reports logs that repeat the samples of an earlier log, and logs whose
+/// motion differs from the motion of the other logs by the ratio of two units.
 /// @param repeated  sentence without a full stop: the effect of repeated samples on the result.
 [[nodiscard]] std::vector<std::string> plausibility_warnings_among(
     const std::vector<Log>& logs, std::string_view repeated = repeated_in_fit);

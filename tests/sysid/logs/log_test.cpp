@@ -528,6 +528,23 @@ TEST(FirstCommand, WrongFirstCommandIsReplacedWithANote) {
       "the log begins with a command of 40 kPa in 1 sample, but the readings belong to the next command, "
       "0 kPa, which was used instead");
   EXPECT_EQ(read->notes[0].line, 2);
+  EXPECT_TRUE(read->notes[0].corrects);
+}
+
+TEST(FirstReadings, WrongFirstReadingsAreRemovedWithANote) {
+  Log log = good_log();
+  std::fill_n(log.displacement_mm.begin(), 2, -7.5);
+  Problems problems;
+  const std::optional<Log> read = parse_log("log.csv", format_log(log), problems);
+  ASSERT_TRUE(read) << problems.format();
+  EXPECT_TRUE(std::isnan(read->displacement_mm[0]));
+  EXPECT_TRUE(std::isnan(read->displacement_mm[1]));
+  EXPECT_EQ(read->displacement_mm[2], log.displacement_mm[2]);
+  ASSERT_FALSE(read->notes.empty());
+  EXPECT_EQ(read->notes[0].text,
+            "the first 2 readings were removed: the jump from -7.5 to 0.502 mm has no cause in the pressure");
+  EXPECT_EQ(read->notes[0].line, 2);
+  EXPECT_TRUE(read->notes[0].corrects);
 }
 
 }  // namespace

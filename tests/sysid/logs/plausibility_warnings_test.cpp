@@ -200,6 +200,13 @@ TEST(PlausibilityWarnings, DuplicateLogIsReported) {
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
 }
 
+TEST(PlausibilityWarnings, CorrectedValuesAreReported) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  log.name = "a";
+  log.notes = {{2, "a reading was removed", true}, {3, "a gap", false}};
+  EXPECT_EQ(all_of(plausibility_warnings_among({log})), "a: a reading was removed\n");
+}
+
 TEST(PlausibilityWarnings, ReadingsScaledAgainstTheModelAreReported) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::vector<double> predicted = log.displacement_mm;
