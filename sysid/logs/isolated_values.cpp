@@ -82,7 +82,7 @@ std::string listed(const std::vector<double>& column, const std::vector<double>&
   std::string text;
   for (std::size_t k = 0; k < std::min(most, samples.size()); ++k)
     text += (k == 0 ? "" : ", ") + significant(column[samples[k]]) + " " + std::string(unit) + " at " +
-            significant(time_s[samples[k]]) + " s";
+            significant(time_s[samples[k]], 6) + " s";
   if (samples.size() > most) text += " and " + std::to_string(samples.size() - most) + " more";
   return text;
 }

@@ -10,6 +10,7 @@
 #include "base/statistics.h"
 #include "model/port_flow.h"
 #include "sysid/logs/command_range.h"
+#include "sysid/logs/isolated_values.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
@@ -145,19 +146,12 @@ void check_single_commands(const Log& log, std::vector<std::string>& warnings) {
   if (log.size() == 0) return;
   const CommandRange range = command_range(log.pressure_command_kpa);
   if (range.excursions.empty()) return;
-  constexpr std::size_t most_named = 3;
-  std::string list;
-  for (std::size_t k = 0; k < std::min(most_named, range.excursions.size()); ++k) {
-    const std::size_t at = range.excursions[k];
-    list += (list.empty() ? "" : ", ") + significant(log.pressure_command_kpa[at]) + " kPa at " +
-            significant(log.time_s[at], 6) + " s";
-  }
   const bool is_one = range.excursions.size() == 1;
   warnings.push_back(std::to_string(range.excursions.size()) +
                      (is_one ? " single sample has a command" : " single samples have commands") +
                      " outside the range of all other samples (" + significant(range.lowest_kpa, 3) + " to " +
-                     significant(range.highest_kpa, 3) + " kPa): " + list +
-                     (range.excursions.size() > most_named ? ", ..." : "") +
+                     significant(range.highest_kpa, 3) +
+                     " kPa): " + listed(log.pressure_command_kpa, log.time_s, range.excursions, "kPa") +
                      ". softgrip uses these values. If a value is wrong, use `softgrip import --missing-in "
                      "COLUMN=X`, which replaces X by the previous command");
 }
