@@ -8,6 +8,7 @@
 
 #include "base/enum_table.h"
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "base/thread_budget.h"
 #include "sysid/changes/base.h"
 #include "sysid/changes/change_judge.h"
@@ -160,6 +161,15 @@ ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
 
 }  // namespace
 
+double share_explained(const JudgedChange& judged) {
+  const double excess_mm2 = square(judged.later_mm) - square(judged.healthy_mm);
+  const double excess_loss = judged.loss_before - 1;
+  const double plain =
+      excess_mm2 > 0 ? (square(judged.later_mm) - square(judged.explained_mm)) / excess_mm2 : 0;
+  const double white = excess_loss > 0 ? (judged.loss_before - judged.loss_left) / excess_loss : 0;
+  return std::clamp(std::max(plain, white), 0.0, 1.0);
+}
+
 std::string_view name_of(ChangeVerdict verdict) {
   static constexpr auto names = enum_names<ChangeVerdict>({
       {ChangeVerdict::unchanged, "unchanged"},
@@ -211,6 +221,7 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
     diagnosis.warnings.push_back(another_command(diagnosis.another_command));
   diagnosis.output_unit = healthy.front().output_unit;
   for (ChangeCause& cause : diagnosis.causes) cause.output_unit = diagnosis.output_unit;
+  for (ChangeCause& cause : diagnosis.partial) cause.output_unit = diagnosis.output_unit;
   for (JudgedChange& judged : diagnosis.readings) judged.output_unit = diagnosis.output_unit;
   diagnosis.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return diagnosis;

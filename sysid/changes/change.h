@@ -106,7 +106,12 @@ struct JudgedChange {
   /// Fitted deviation of the gain from the gain in the healthy logs [%]. It is within the spread of the
   /// healthy logs, so it does not count as a change.
   double gain_percent = 0;
-  /// True if the causes leave an error that no further healthy run is expected to have.
+  /// Share of the excess error that all causes together explain, 0 .. 1. The excess error is the increase of
+  /// the squared error since the healthy logs. The share is the larger one of two shares: without and with
+  /// whitening.
+  double explained_share = 0;
+  /// True if the causes leave an error that no further healthy run is expected to have, or if the causes
+  /// explain less than half of the excess error.
   bool left_over = false;
   /// Name of the only later log with such an error; empty if there is none, or if other logs also have it.
   std::string unusual_log;
@@ -121,9 +126,15 @@ struct JudgedChange {
   Binned left, explained;
 };
 
+/// Computes JudgedChange::explained_share from the other values of the result.
+[[nodiscard]] double share_explained(const JudgedChange& judged);
+
 struct ChangeDiagnosis {
   ChangeVerdict verdict = ChangeVerdict::unexplained;
   std::vector<ChangeCause> causes;
+  /// Causes that meet all conditions but together explain less than half of the excess error of their
+  /// quantity. Another change may have similar effects, so they are not named.
+  std::vector<ChangeCause> partial;
   model::OutputUnit output_unit = model::OutputUnit::mm;
   std::vector<JudgedChange> readings;
   /// Name of the first later log whose command no healthy log has; empty: there is none, or the verdict is
@@ -144,7 +155,8 @@ struct ChangeDiagnosis {
 /// there is no interval, and "not determined by these logs" if the interval is too wide (is_determined()).
 [[nodiscard]] std::string interval_text(const ChangeCause& cause);
 
-/// Returns the verdict as one sentence for a technician.
+/// Returns the verdict for a technician. If the causes explain less than half of the excess error, a second
+/// sentence states them.
 [[nodiscard]] std::string change_sentence(const ChangeDiagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,8 @@ namespace {
 constexpr std::size_t most_causes = 3;
 constexpr auto* reason_for_no_search =
     "the error of the later logs is within the error permitted for a further healthy run";
+
+constexpr auto* explains_less_than_half = "it explains less than half of the error of the change";
 
 double rms_about_mean(const std::vector<double>& series) {
   PairSums sums;
@@ -155,6 +158,8 @@ class Judge {
     accept_named(diagnosis.causes, judged);
     add_sizes(readings, found, diagnosis.causes);
     finish(readings, effects, found, judged);
+    if (!found.empty() && judged.unusual_log.empty() && judged.explained_share < limits::majority_share)
+      leave_unnamed(diagnosis, judged);
     if (base_.judged == Judged::displacement && found.empty() && has_unusual_gain(judged))
       diagnosis.warnings.push_back(unusual_gain(
           judged.gain_percent,
@@ -321,6 +326,24 @@ class Judge {
     return {};
   }
 
+  /// Moves the causes of this quantity to the partial causes.
+  void leave_unnamed(ChangeDiagnosis& diagnosis, JudgedChange& judged) const {
+    const auto named = std::stable_partition(
+        diagnosis.causes.begin(), diagnosis.causes.end(), [&](const ChangeCause& cause) {
+          return cause.judged != base_.judged || cause.fitted.effect.id.empty();
+        });
+    for (auto cause = named; cause != diagnosis.causes.end(); ++cause) {
+      for (TriedCause& tried : judged.tried) {
+        if (tried.id == cause->id ||
+            std::count(cause->alternatives.begin(), cause->alternatives.end(), tried.id) > 0)
+          tried.rejected = explains_less_than_half;
+      }
+    }
+    std::move(named, diagnosis.causes.end(), std::back_inserter(diagnosis.partial));
+    diagnosis.causes.erase(named, diagnosis.causes.end());
+    judged.left_over = true;
+  }
+
   void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
               const std::vector<FittedEffect>& found, JudgedChange& judged) const {
     judged.later_mm = readings.plain_rms({});
@@ -329,6 +352,7 @@ class Judge {
       judged.unusual_log = decisive_record(readings, found);
       judged.left_over = judged.unusual_log.empty();
     }
+    judged.explained_share = share_explained(judged);
     judged.bin_s = base_.bin_s;
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
     judged.left = readings.left();

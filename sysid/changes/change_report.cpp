@@ -115,6 +115,39 @@ std::string unchanged_sentence(const std::vector<JudgedChange>& readings) {
          permitted + ").";
 }
 
+std::string verdict_sentence(const ChangeDiagnosis& diagnosis) {
+  if (diagnosis.verdict == ChangeVerdict::unchanged) return unchanged_sentence(diagnosis.readings);
+  if (diagnosis.verdict == ChangeVerdict::unexplained && !diagnosis.another_command.empty())
+    return "The later logs differ from the prediction of the baseline model, and no cause of the library "
+           "explains the difference. The reason is a change of the finger or an error of the model, "
+           "because no healthy log has the command of " +
+           diagnosis.another_command + ".";
+  if (diagnosis.verdict == ChangeVerdict::unexplained)
+    return "The finger has changed since the healthy logs, but no cause of the library explains the change.";
+  std::string text = "Change since the healthy logs: ";
+  for (std::size_t i = 0; i < diagnosis.causes.size(); ++i)
+    text += (i == 0 ? "" : "; and ") + named(diagnosis.causes[i]);
+  if (diagnosis.verdict == ChangeVerdict::partly_explained)
+    text += "; another part of the change remains unexplained";
+  return text + ".";
+}
+
+/// Returns a sentence about the partial causes of each quantity, with a space before it.
+std::string partial_sentences(const ChangeDiagnosis& diagnosis) {
+  std::string text;
+  for (const JudgedChange& judged : diagnosis.readings) {
+    std::string causes;
+    for (const ChangeCause& cause : diagnosis.partial) {
+      if (cause.judged == judged.judged) causes += (causes.empty() ? "" : "; and ") + named(cause);
+    }
+    if (!causes.empty())
+      text += " The following explanation accounts for only " + fixed(100 * judged.explained_share, 0) +
+              " % of the additional error of the " + name_of(judged.judged) +
+              ", so it is not reported as the cause: " + causes + ".";
+  }
+  return text;
+}
+
 /// Largest number of tested causes that the figure shows.
 constexpr std::size_t drawn_causes = 8;
 
@@ -220,8 +253,9 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
 void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
   page.section(std::string("The ") + name_of(judged.judged));
   page.terms(result::terms_of(fields_of(judged)));
-  const bool explained = std::any_of(d.causes.begin(), d.causes.end(),
-                                     [&](const ChangeCause& cause) { return cause.judged == judged.judged; });
+  const auto is_of_quantity = [&](const ChangeCause& cause) { return cause.judged == judged.judged; };
+  const bool explained =
+      std::ranges::any_of(d.causes, is_of_quantity) || std::ranges::any_of(d.partial, is_of_quantity);
   page.figure(residual_figure(judged, explained));
   page.figure(runs_figure(judged, explained));
   page.figure(tried_figure(judged));
@@ -249,6 +283,8 @@ Fields fields_of(const JudgedChange& judged) {
        number(judged.unevaluated_share, 2)},
       {"later_rms", "error of the later logs", number(judged.later_mm, 3, unit)},
       {"explained_rms", "error with the causes", number(judged.explained_mm, 3, unit)},
+      {"explained_percent", "share of the excess error that the causes explain [%]",
+       decimals(100 * judged.explained_share, 0)},
       {"whitened_loss", loss},
       {"misfit", loss},
       {"unexplained", judged.left_over},
@@ -279,7 +315,7 @@ Fields fields_of(const ChangeDiagnosis& d) {
           {"gain_percent", Fields{{"value", gain}, {"ci95", Value()}}},  // this key is deprecated
           {"unexplained_percent",
            excess > 0 ? std::clamp(100 * (finger.loss_left - 1) / excess, 0.0, 100.0) : 0.0},
-          {"partial_causes", Value::List()},
+          {"partial_causes", list_of(d.partial, fields_of_cause)},
           {"structure", finger.base},
           {"base", finger.base},  // this key is deprecated
           {"next_experiment", Value()},
@@ -324,20 +360,7 @@ std::string interval_text(const ChangeCause& cause) {
 }
 
 std::string change_sentence(const ChangeDiagnosis& diagnosis) {
-  if (diagnosis.verdict == ChangeVerdict::unchanged) return unchanged_sentence(diagnosis.readings);
-  if (diagnosis.verdict == ChangeVerdict::unexplained && !diagnosis.another_command.empty())
-    return "The later logs differ from the prediction of the baseline model, and no cause of the library "
-           "explains the difference. The reason is a change of the finger or an error of the model, "
-           "because no healthy log has the command of " +
-           diagnosis.another_command + ".";
-  if (diagnosis.verdict == ChangeVerdict::unexplained)
-    return "The finger has changed since the healthy logs, but no cause of the library explains the change.";
-  std::string text = "Change since the healthy logs: ";
-  for (std::size_t i = 0; i < diagnosis.causes.size(); ++i)
-    text += (i == 0 ? "" : "; and ") + named(diagnosis.causes[i]);
-  if (diagnosis.verdict == ChangeVerdict::partly_explained)
-    text += "; another part of the change remains unexplained";
-  return text + ".";
+  return verdict_sentence(diagnosis) + partial_sentences(diagnosis);
 }
 
 Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
@@ -348,6 +371,9 @@ Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healt
   all.insert(all.end(), later.begin(), later.end());
   page.provenance(provenance_of(all, {{"given", &given}}));
   if (!diagnosis.causes.empty()) add_causes(page, diagnosis);
+  if (!diagnosis.partial.empty())
+    page.table(result::table_of("Partial explanations, too small to be reported as the cause",
+                                diagnosis.partial, fields_of_cause));
   if (!diagnosis.warnings.empty()) {
     page.section("Limits of the data");
     page.list(diagnosis.warnings);

@@ -150,8 +150,8 @@ void check_single_commands(const Log& log, std::vector<std::string>& warnings) {
   warnings.push_back(std::to_string(range.excursions.size()) +
                      (is_one ? " single sample has a command" : " single samples have commands") +
                      " outside the range of all other samples (" + significant(range.lowest_kpa, 3) + " to " +
-                     significant(range.highest_kpa, 3) +
-                     " kPa): " + listed(log.pressure_command_kpa, log.time_s, range.excursions, "kPa") +
+                     significant(range.highest_kpa, 3) + " kPa): " +
+                     sysid::listed(log.pressure_command_kpa, log.time_s, range.excursions, "kPa") +
                      ". softgrip uses these values. If a value is wrong, use `softgrip import --missing-in "
                      "COLUMN=X`, which replaces X by the previous command");
 }

@@ -52,6 +52,8 @@ void print_explanation(const sysid::JudgedChange& judged) {
 void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
   std::printf("%s\n\n", sysid::change_sentence(d).c_str());
   for (const sysid::ChangeCause& cause : d.causes) print_cause(cause);
+  if (!d.partial.empty()) std::puts("  Partial explanations, too small to be reported as the cause:");
+  for (const sysid::ChangeCause& cause : d.partial) print_cause(cause);
   for (const sysid::JudgedChange& judged : d.readings) {
     std::printf(
         "  %-12s noise %s; residual of the baseline model: %s on baseline logs, %s on later logs, %s with "

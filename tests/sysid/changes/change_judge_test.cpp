@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,43 @@ TEST_F(ChangeJudge, FindsADelay) {
   ASSERT_EQ(diagnosis.causes.size(), 1U);
   EXPECT_EQ(diagnosis.causes.front().id, "transport_delay");
   EXPECT_EQ(diagnosis.causes.front().judged, Judged::pressure);
+}
+
+/// Adds a disturbance to the measured pressures that no cause describes: +height and -height in a random
+/// order, each for 1 to 5 s.
+std::vector<Log> disturbed(std::vector<Log> logs, double height_kpa) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<std::size_t> length(50, 250);
+  for (Log& log : logs) {
+    double sign = 1;
+    for (std::size_t i = 0, left = 0; i < log.size(); ++i, --left) {
+      if (left == 0) {
+        left = length(random);
+        sign = random() % 2 == 0 ? 1 : -1;
+      }
+      log.pressure_kpa[i] += sign * height_kpa;
+    }
+  }
+  return logs;
+}
+
+/// A delay is only a part of the change, so it may be a consequence of the unknown rest.
+TEST_F(ChangeJudge, ACauseOfLessThanHalfOfTheChangeIsAPartialCause) {
+  for (const double height_kpa : {0.0, 2.0}) {
+    const ChangeDiagnosis diagnosis =
+        judged_logs(disturbed(test::logs_of({.delay_s = 0.1}, 5, true), height_kpa));
+    const JudgedChange& judged = diagnosis.readings.front();
+    const auto& named = height_kpa > 0 ? diagnosis.partial : diagnosis.causes;
+    const auto& others = height_kpa > 0 ? diagnosis.causes : diagnosis.partial;
+    ASSERT_EQ(named.size(), 1U) << height_kpa << ' ' << judged.explained_share << change_sentence(diagnosis);
+    EXPECT_TRUE(others.empty());
+    EXPECT_EQ(named.front().id, "transport_delay");
+    EXPECT_EQ(judged.explained_share<0.5, height_kpa> 0) << judged.explained_share;
+    EXPECT_EQ(judged.left_over, height_kpa > 0);
+    const auto tried = std::ranges::find(judged.tried, "transport_delay", &TriedCause::id);
+    ASSERT_NE(tried, judged.tried.end());
+    EXPECT_EQ(tried->rejected, height_kpa > 0 ? "it explains less than half of the error of the change" : "");
+  }
 }
 
 /// The first search names a cause and leaves an error, so a second search tries all causes again.

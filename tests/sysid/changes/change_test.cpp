@@ -454,6 +454,46 @@ TEST(ChangeResult, UnexplainedErrorForAnotherCommandMayBeAModelError) {
       "healthy log has the command of today.");
 }
 
+JudgedChange judged_with(double later_mm, double explained_mm, double loss_before, double loss_left) {
+  JudgedChange judged;
+  judged.healthy_mm = 1;
+  judged.later_mm = later_mm;
+  judged.explained_mm = explained_mm;
+  judged.loss_before = loss_before;
+  judged.loss_left = loss_left;
+  return judged;
+}
+
+TEST(ChangeResult, ExplainedShareIsTheLargerOneOfTwoShares) {
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(3, 1, 5, 5)), 1.0);
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(3, std::sqrt(7), 5, 4)), 0.25);
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(3, std::sqrt(7), 5, 2)), 0.75);
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(3, 3.2, 5, 5)), 0.0);
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(3, 0.5, 5, 5)), 1.0) << "at most 1";
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(0.9, 0.8, 5, 4)), 0.25) << "no excess error without whitening";
+  EXPECT_DOUBLE_EQ(share_explained(judged_with(0.9, 0.8, 0.9, 0.8)), 0.0) << "no excess error";
+}
+
+TEST(ChangeResult, PartialCausesAreStatedAfterTheVerdict) {
+  ChangeDiagnosis d;
+  d.verdict = ChangeVerdict::unexplained;
+  d.readings.emplace_back().explained_share = 0.36;
+  ChangeCause& cause = d.partial.emplace_back();
+  cause.id = "valve_lag";
+  cause.size = {"increase of the lag of the valve", 0.03, "s"};
+  cause.alternatives = {"sensor_lag"};
+  EXPECT_EQ(
+      change_sentence(d),
+      "The finger has changed since the healthy logs, but no cause of the library explains the change. The "
+      "following explanation accounts for only 36 % of the additional error of the displacement, so it is "
+      "not "
+      "reported as the cause: the pressure responds more slowly than before (valve_lag: increase of the lag "
+      "of "
+      "the valve 0.03 s), or the reading responds more slowly than before (sensor_lag).");
+  const std::string json = result::json_text(fields_of(d));
+  EXPECT_LT(json.find("partial_causes"), json.find("\"valve_lag\"")) << json;
+}
+
 TEST(ChangeResult, ParametersHaveTheDeprecatedNameBesideTheName) {
   ChangeDiagnosis d;
   d.readings.emplace_back();
