@@ -113,8 +113,8 @@ inline constexpr double finger_interval_s = 0.05;
 /// the command. The only noise of a planned command is the rounding in its file. The command of a controller
 /// also contains the noise of the readings.
 inline constexpr double planned_roughness = 1e-4;
-/// Smallest phase_ratio() for which a cross-correlation counts as odd. Above this limit, the phase shift is
-/// between 60 and 120 degrees.
-inline constexpr double odd_phase_ratio = 2.0 / 3;
+/// Largest phase_ratio() for which a cross-correlation counts as even. Up to this limit, the phase shift
+/// differs by at most 30 degrees from 0 or 180 degrees.
+inline constexpr double even_phase_ratio = 1.0 / 3;
 
 }  // namespace softgrip::sysid::limits

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "base/text.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/valve_stiction.h"
@@ -194,16 +195,20 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs) {
   const auto is_closed = [](const Log& log) {
     return is_closed_loop(log.pressure_command_kpa, log.displacement_mm);
   };
-  const auto sticks = [](const Log& log) {
-    return shows_stiction(log.pressure_command_kpa, log.displacement_mm);
-  };
   if (!std::all_of(logs.begin(), logs.end(), is_closed)) return;
   d.warnings.emplace_back(
       "The command depends on the readings (closed loop), so the command contains the noise of the readings. "
       "A simulation with this command is therefore uncertain");
-  if (!std::all_of(logs.begin(), logs.end(), sticks)) return;
+  std::vector<std::string> bands;
+  for (const Log& log : logs) {
+    const auto stem = shown_stiction(log.pressure_command_kpa, log.displacement_mm);
+    if (!stem) return;
+    bands.push_back(significant(stem->band, 2));
+  }
   d.warnings.emplace_back(
-      "The phase shift between command and reading indicates a sticking valve (Horch 1999)");
+      "In the closed loop, a sticking valve predicts the readings better than a valve that follows the "
+      "command. The best prediction has a dead band of about " +
+      with_commas(bands) + " kPa");
   std::erase_if(d.causes,
                 [](const NamedCause& named) { return named.cause.id == causes::ValveDeadband::id; });
   std::move(d.causes.begin(), d.causes.end(), std::back_inserter(d.partial));

@@ -14,6 +14,21 @@
 namespace softgrip::sysid {
 namespace {
 
+struct Series {
+  std::vector<double> command, reading;
+};
+
+/// Returns the samples in which command and reading are finite.
+Series finite_pairs(const std::vector<double>& command, const std::vector<double>& reading) {
+  Series series;
+  for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
+    if (!std::isfinite(command[i]) || !std::isfinite(reading[i])) continue;
+    series.command.push_back(command[i]);
+    series.reading.push_back(reading[i]);
+  }
+  return series;
+}
+
 struct Pair {
   Eigen::VectorXd command, reading;
 };
@@ -21,12 +36,7 @@ struct Pair {
 /// Returns the samples in which command and reading are finite. Both series are scaled to zero mean and unit
 /// standard deviation. The result is empty if one of the series is constant.
 Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
-  std::vector<double> u, y;
-  for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
-    if (!std::isfinite(command[i]) || !std::isfinite(reading[i])) continue;
-    u.push_back(command[i]);
-    y.push_back(reading[i]);
-  }
+  const auto [u, y] = finite_pairs(command, reading);
   const auto scaled = [](const std::vector<double>& values) {
     Eigen::VectorXd v =
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -91,10 +101,15 @@ std::optional<double> phase_ratio(const std::vector<double>& command, const std:
   return std::abs(*left - *right) / (*left + *right);
 }
 
-bool shows_stiction(const std::vector<double>& command, const std::vector<double>& reading) {
-  if (!is_closed_loop(command, reading)) return false;
+std::optional<StickingStem> shown_stiction(const std::vector<double>& command,
+                                           const std::vector<double>& reading) {
+  if (!is_closed_loop(command, reading)) return std::nullopt;
   const std::optional<double> ratio = phase_ratio(command, reading);
-  return ratio && *ratio > limits::odd_phase_ratio;
+  if (!ratio || *ratio <= limits::even_phase_ratio) return std::nullopt;
+  const auto [u, y] = finite_pairs(command, reading);
+  const std::optional<StickingStem> stem = best_sticking_stem(u, y);
+  if (!stem || stem->log_likelihood_ratio <= limits::strict_log_likelihood) return std::nullopt;
+  return stem;
 }
 
 }  // namespace softgrip::sysid

@@ -1,15 +1,18 @@
 #pragma once
-// Detects valve stiction in a closed loop from the phase between command and reading.
+// Detects valve stiction in a closed loop.
 //
 // In a closed loop, the command depends on the readings and their noise. A simulation from the command
-// therefore gives no evidence about the valve, but the phase between command and reading does. If the valve
-// sticks, the cross-correlation of command and reading is odd (phase shift of 90 degrees). If a disturbance
-// or a tightly tuned controller causes the oscillation, the cross-correlation is even (180 degrees). This
-// rule holds for self-regulating processes. A. Horch, "A simple method for detection of stiction in control
-// valves", Control Engineering Practice 7 (1999) 1221-1231.
+// therefore gives no evidence about the valve. If the cross-correlation of command and reading is even (phase
+// shift of 0 or 180 degrees), the reading follows the command, or a disturbance or a tightly tuned controller
+// causes the oscillation. If the valve sticks, the cross-correlation is odd (90 degrees). A. Horch, "A simple
+// method for detection of stiction in control valves", Control Engineering Practice 7 (1999) 1221-1231. An
+// integrating controller also shifts the phase of slow disturbances by 90 degrees. The phase can therefore
+// exclude a sticking valve, but only the comparison of predictions in loop_valve.h can show it.
 
 #include <optional>
 #include <vector>
+
+#include "sysid/diagnosis/verdict/loop_valve.h"
 
 namespace softgrip::sysid {
 
@@ -28,8 +31,11 @@ namespace softgrip::sysid {
 [[nodiscard]] std::optional<double> phase_ratio(const std::vector<double>& command,
                                                 const std::vector<double>& reading);
 
-/// Returns true if the signals indicate a sticking valve. Two conditions must hold: the loop is closed, and
-/// the phase shift between command and reading is between 60 and 120 degrees.
-[[nodiscard]] bool shows_stiction(const std::vector<double>& command, const std::vector<double>& reading);
+/// Returns the sticking valve that the signals show, or nullopt. Three conditions must hold: the loop is
+/// closed, the phase shift between command and reading is between 30 and 150 degrees, and a sticking valve
+/// predicts the readings better than a valve that follows the command. The required likelihood ratio is
+/// exp(limits::strict_log_likelihood), multiplied by the number of sticking valves that are compared.
+[[nodiscard]] std::optional<StickingStem> shown_stiction(const std::vector<double>& command,
+                                                         const std::vector<double>& reading);
 
 }  // namespace softgrip::sysid

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid::loop_phase_test {
 namespace {
 
@@ -17,13 +19,15 @@ struct Signals {
 /// Returns the signals of a control loop with a PI controller that keeps the flow through a valve at 0.
 /// @param band  change of the command at which the valve breaks free and jumps.
 /// @param wave  amplitude of a disturbance of the flow.
-Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
+/// @param load  constant flow that the valve must compensate. With a load between two positions of the valve,
+/// the valve jumps again and again; otherwise it can rest during the whole record.
+Signals loop(double band, double wave, double proportional, double integral, unsigned seed, double load = 0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
   Signals signals;
   double stem = 0.3, flow = 0, sum = 0;
   for (int i = 0; i < 1500; ++i) {
-    const double disturbed = flow + wave * std::sin(2 * std::numbers::pi * i / 60.0) + noise(random);
+    const double disturbed = flow + load + wave * std::sin(2 * std::numbers::pi * i / 60.0) + noise(random);
     sum += integral * disturbed;
     const double command = -proportional * disturbed - sum;
     if (std::abs(command - stem) > band) stem = command;
@@ -51,11 +55,13 @@ Signals planned(double lag_share, unsigned seed) {
 }
 
 TEST(LoopPhase, StictionGivesAnOddCrossCorrelation) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Signals s = loop(0.3, 0, 0.05, 0.03, seed);
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Signals s = loop(0.37, 0, 0.05, 0.03, seed, 0.13);
     EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
     EXPECT_GT(phase_ratio(s.command, s.reading).value_or(0), 2.0 / 3) << seed;
-    EXPECT_TRUE(shows_stiction(s.command, s.reading)) << seed;
+    const auto stem = shown_stiction(s.command, s.reading);
+    ASSERT_TRUE(stem) << seed;
+    EXPECT_NEAR(stem->band, 0.37, 0.03) << seed;
   }
 }
 
@@ -64,7 +70,50 @@ TEST(LoopPhase, DisturbanceGivesAnEvenCrossCorrelation) {
     const Signals s = loop(0, 1, 0.4, 0.01, seed);
     EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
     EXPECT_LT(phase_ratio(s.command, s.reading).value_or(1), 1.0 / 3) << seed;
-    EXPECT_FALSE(shows_stiction(s.command, s.reading)) << seed;
+    EXPECT_FALSE(shown_stiction(s.command, s.reading)) << seed;
+  }
+}
+
+/// An integrating controller shifts the phase of a slow disturbance by 90 degrees, although the valve is
+/// free.
+TEST(LoopPhase, AnOddCrossCorrelationOfASlowDisturbanceIsNoStiction) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Signals s = loop(0, 1, 0.02, 0.3, seed);
+    EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
+    EXPECT_GT(phase_ratio(s.command, s.reading).value_or(0), 2.0 / 3) << seed;
+    EXPECT_FALSE(shown_stiction(s.command, s.reading)) << seed;
+  }
+}
+
+/// If the reading follows a changing setpoint, hysteresis of the finger has the same effect as a sticking
+/// valve.
+TEST(LoopPhase, AReadingThatFollowsItsSetpointShowsNoStiction) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 0.01);
+  Signals s;
+  double stem = 0, flow = 0, sum = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const double error = (i / 80 % 3) - flow + noise(random);
+    sum += 0.05 * error;
+    s.command.push_back(0.1 * error + sum);
+    if (std::abs(s.command.back() - stem) > 0.3) stem = s.command.back();
+    flow += 0.5 * (stem - flow);
+    s.reading.push_back((i / 80 % 3) - error);
+  }
+  const auto stem_found = best_sticking_stem(s.command, s.reading);
+  ASSERT_TRUE(stem_found);
+  EXPECT_GT(stem_found->log_likelihood_ratio, limits::strict_log_likelihood);
+  EXPECT_TRUE(is_closed_loop(s.command, s.reading));
+  EXPECT_FALSE(shown_stiction(s.command, s.reading));
+}
+
+/// With these seeds, the valve rests during the whole record. The command then only integrates the noise of
+/// the readings, and nothing in the record depends on the valve.
+TEST(LoopPhase, AValveThatNeverMovesShowsNoStiction) {
+  for (unsigned seed = 3; seed <= 5; ++seed) {
+    const Signals s = loop(0.3, 0, 0.05, 0.03, seed);
+    EXPECT_GT(phase_ratio(s.command, s.reading).value_or(0), 2.0 / 3) << seed;
+    EXPECT_FALSE(shown_stiction(s.command, s.reading)) << seed;
   }
 }
 
@@ -72,7 +121,7 @@ TEST(LoopPhase, PlannedCommandIsNoClosedLoopAtAnyLag) {
   for (const double lag_share : {1.0, 0.2, 0.01}) {
     const Signals s = planned(lag_share, 3);
     EXPECT_FALSE(is_closed_loop(s.command, s.reading)) << lag_share;
-    EXPECT_FALSE(shows_stiction(s.command, s.reading)) << lag_share;
+    EXPECT_FALSE(shown_stiction(s.command, s.reading)) << lag_share;
   }
 }
 
@@ -90,18 +139,18 @@ TEST(LoopPhase, RandomCommandIsNoClosedLoop) {
     s.reading.push_back(reading + 0.01 * normal(random));
   }
   EXPECT_FALSE(is_closed_loop(s.command, s.reading));
-  EXPECT_FALSE(shows_stiction(s.command, s.reading));
+  EXPECT_FALSE(shown_stiction(s.command, s.reading));
 }
 
 TEST(LoopPhase, StictionIsShownDespiteGapsButNotByAConstant) {
-  Signals s = loop(0.3, 0, 0.05, 0.03, 1);
+  Signals s = loop(0.3, 0, 0.05, 0.03, 1, 0.1);
   for (std::size_t i = 0; i < s.reading.size(); i += 7)
     s.reading[i] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(shows_stiction(s.command, s.reading));
+  EXPECT_TRUE(shown_stiction(s.command, s.reading));
   const std::vector<double> constant(s.command.size(), 2);
   EXPECT_FALSE(phase_ratio(constant, s.reading));
-  EXPECT_FALSE(shows_stiction(constant, s.reading));
-  EXPECT_FALSE(shows_stiction({}, {}));
+  EXPECT_FALSE(shown_stiction(constant, s.reading));
+  EXPECT_FALSE(shown_stiction({}, {}));
   s.command.resize(40);
   s.reading.resize(40);
   EXPECT_FALSE(is_closed_loop(s.command, s.reading));
