@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Core>
+#include <Eigen/QR>
 
 #include "base/statistics.h"
 #include "sysid/limits/limits.h"
@@ -17,12 +17,14 @@ namespace {
 
 // The grids contain the sizes that a record can show: bands between the noise and the span of the command,
 // and lags and dead times between one sample and a part of the record.
-constexpr std::array band_shares{0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 0.95};
+constexpr std::array band_shares{0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 0.95};
 constexpr std::array jump_shares{0.0, 1.0 / 3, 2.0 / 3, 1.0};
 constexpr std::array<double, 7> process_poles{0.0, 0.5, 0.8, 0.92, 0.97, 0.99, 0.995};
 constexpr std::array<Eigen::Index, 10> dead_times{1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 constexpr std::array load_zeros{0.0, 0.4, 0.7, 0.85, 0.95, 0.99};
-constexpr std::array load_poles{0.0, 0.5, 0.9};
+/// Number of past readings in the model of the load. Ten describe a sinusoidal load behind the noise of the
+/// readings. With six, smooth sinusoidal loads with long periods are reported as a sticking valve.
+constexpr Eigen::Index load_order = 10;
 /// Number of samples at the beginning without a prediction: the largest dead time, and the start of the
 /// filters.
 constexpr Eigen::Index skipped = 34;
@@ -30,16 +32,14 @@ constexpr Eigen::Index fewest_predictions = 200;
 /// Relative decrease of the sum of squares below which a refinement ends.
 constexpr double least_improvement = 1e-4;
 
-/// Returns the samples behind the inverse model of the load, (1 - z)(1 - pole z) / (1 - zero z), where z is
-/// the shift by one sample.
-Eigen::VectorXd whitened(const std::vector<double>& values, double zero, double pole) {
+/// Returns the differences of the samples behind the inverse of a moving average, (1 - z) / (1 - zero z). z
+/// is the shift by one sample.
+Eigen::VectorXd whitened(const std::vector<double>& values, double zero) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(values.size()));
-  double before = values.front(), state = 0, earlier = 0;
+  double before = values.front(), state = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double now = zero * state + values[i] - before;
-    out[static_cast<Eigen::Index>(i)] = now - pole * earlier;
+    state = out[static_cast<Eigen::Index>(i)] = zero * state + values[i] - before;
     before = values[i];
-    state = earlier = now;
   }
   return out;
 }
@@ -52,7 +52,8 @@ Eigen::VectorXd lagged(Eigen::VectorXd values, double pole) {
 
 /// Behaviour of process and load.
 struct Dynamics {
-  double zero = 0, load_pole = 0, pole = 0;
+  std::size_t zero = 0;  ///< index in `load_zeros`
+  double pole = 0;
 };
 
 struct Fit {
@@ -64,47 +65,59 @@ struct Fit {
 class Predictions {
  public:
   explicit Predictions(const std::vector<double>& reading)
-      : reading_(reading), rows_(static_cast<Eigen::Index>(reading.size()) - skipped) {}
+      : rows_(static_cast<Eigen::Index>(reading.size()) - skipped) {
+    for (const double zero : load_zeros) {
+      const Eigen::VectorXd white = whitened(reading, zero);
+      Eigen::MatrixXd past(rows_, load_order);
+      for (Eigen::Index lag = 1; lag <= load_order; ++lag)
+        past.col(lag - 1) = white.segment(skipped - lag, rows_);
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(past);
+      Readings readings{qr.householderQ() * Eigen::MatrixXd::Identity(rows_, load_order), white.tail(rows_)};
+      readings.target -= readings.past * (readings.past.transpose() * readings.target);
+      readings_.push_back(std::move(readings));
+    }
+  }
 
-  /// Returns the fit with the given dynamics, and with the best dead time and gain.
+  /// Returns the fit with the given dynamics, and with the best load, dead time and gain.
   [[nodiscard]] Fit fit(const std::vector<double>& input, const Dynamics& dynamics) const {
-    const auto& [zero, load_pole, pole] = dynamics;
-    return {squares(lagged(whitened(input, zero, load_pole), pole), target(zero, load_pole)), dynamics};
+    return {squares(lagged(whitened(input, load_zeros[dynamics.zero]), dynamics.pole), dynamics.zero),
+            dynamics};
   }
 
   /// Returns the best fit.
   [[nodiscard]] Fit fit(const std::vector<double>& input) const {
     Fit best;
-    for (const double zero : load_zeros) {
-      for (const double load_pole : load_poles) {
-        const Eigen::VectorXd white = whitened(input, zero, load_pole), readings = target(zero, load_pole);
-        for (const double pole : process_poles) {
-          const double left = squares(lagged(white, pole), readings);
-          if (left < best.squares) best = {left, {zero, load_pole, pole}};
-        }
+    for (std::size_t zero = 0; zero < load_zeros.size(); ++zero) {
+      const Eigen::VectorXd white = whitened(input, load_zeros[zero]);
+      for (const double pole : process_poles) {
+        const double left = squares(lagged(white, pole), zero);
+        if (left < best.squares) best = {left, {zero, pole}};
       }
     }
     return best;
   }
 
  private:
-  [[nodiscard]] Eigen::VectorXd target(double zero, double load_pole) const {
-    return whitened(reading_, zero, load_pole).tail(rows_);
-  }
+  struct Readings {
+    Eigen::MatrixXd past;    ///< orthonormal basis of the past readings
+    Eigen::VectorXd target;  ///< readings that the past readings do not predict
+  };
 
-  [[nodiscard]] double squares(const Eigen::VectorXd& input, const Eigen::VectorXd& readings) const {
-    const double all = readings.squaredNorm();
+  [[nodiscard]] double squares(const Eigen::VectorXd& input, std::size_t zero) const {
+    const auto& [past, target] = readings_[zero];
+    const double all = target.squaredNorm();
     double least = all;
     for (const Eigen::Index delay : dead_times) {
       const auto moved = input.segment(skipped - delay, rows_);
-      const double gained = std::max(0.0, moved.dot(readings)), size = moved.squaredNorm();
-      if (size > 0) least = std::min(least, all - gained * gained / size);
+      const double gained = std::max(0.0, moved.dot(target)), whole = moved.squaredNorm(),
+                   size = whole - (past.transpose() * moved).squaredNorm();
+      if (size > 1e-9 * whole) least = std::min(least, all - gained * gained / size);
     }
     return least;
   }
 
-  const std::vector<double>& reading_;
   Eigen::Index rows_;
+  std::vector<Readings> readings_;  ///< one per value of `load_zeros`
 };
 
 double repeated_share(const std::vector<double>& values) {
@@ -165,7 +178,7 @@ class Stems {
   };
 
   [[nodiscard]] std::optional<std::vector<double>> positions_of(double band, double jump) const {
-    if (!(band > least_band_) || band >= most_band_) return std::nullopt;
+    if (band < least_band_ || band >= most_band_) return std::nullopt;
     std::vector<double> positions = stem_positions(command_, band, jump);
     if (moves_in(positions) < 2) return std::nullopt;
     return positions;
@@ -183,7 +196,6 @@ class Stems {
           const StickingStem near{band + more, std::clamp(jump + higher, 0.0, band + more), 0};
           const auto positions = positions_of(near.band, near.jump);
           if (!positions) continue;
-          ++compared_;
           const Fit fit = predictions_.fit(*positions, one.fit.dynamics);
           if (!(fit.squares < one.fit.squares * (1 - least_improvement))) continue;
           one = {near, fit};
@@ -231,7 +243,9 @@ std::optional<StickingStem> best_sticking_stem(const std::vector<double>& comman
     return std::nullopt;
   const auto [low, high] = std::minmax_element(command.begin(), command.end());
   const double span = *high - *low;
-  Stems stems(command, reading, span, limits::strict_deviate * third_difference_noise(command));
+  const double least_band = std::max(limits::least_explained_share * span,
+                                     limits::strict_deviate * third_difference_noise(command));
+  Stems stems(command, reading, span, least_band);
   for (const double share : band_shares) {
     for (const double jump_share : jump_shares) stems.add(share * span, jump_share * share * span);
   }

@@ -30,14 +30,15 @@ struct StickingStem {
   double band = 0;  ///< S, in the unit of the command
   double jump = 0;  ///< J, in the unit of the command
   /// Natural logarithm of the likelihood ratio, minus the natural logarithm of the number of sticking valves
-  /// that were compared. The correction limits the probability that one of many sticking valves fits by
-  /// chance (Bonferroni).
+  /// in the grid of bands and jumps. The correction limits the probability that one of many sticking valves
+  /// fits by chance (Bonferroni). The best two sticking valves of the grid are refined.
   double log_likelihood_ratio = 0;
 };
 
 /// Returns the sticking valve that predicts the readings best. The band of each sticking valve exceeds the
-/// noise of the command, because a smaller band acts on the noise like a filter. The gain from command to
-/// reading must not be negative. Returns nullopt if
+/// noise of the command, because a smaller band acts on the noise like a filter. The band is at least 20 % of
+/// the range of the command, because the command of a loop that oscillates because of its valve moves by
+/// little more than the band. The gain from command to reading must not be negative. Returns nullopt if
 /// - more than half of the commands or of the readings repeat the previous value, because the record was then
 ///   compressed, and a compressed record looks like rests of the valve (N.F. Thornhill et al., "The impact of
 ///   compression on data-driven process analyses", Journal of Process Control 14 (2004) 389-398);

@@ -49,7 +49,8 @@ std::vector<Log> planned(double rest_s) {
 
 /// Returns one log of a control loop in which a valve keeps a flow constant.
 /// @param band  change of the command to which the valve does not respond.
-/// @param wave  amplitude of a disturbance of the flow.
+/// @param wave  amplitude of a disturbance of the flow. Without it, a constant load lies between two
+/// positions of the valve, so a sticking valve jumps again and again.
 std::vector<Log> loop(double band, double wave) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0, 0.01);
@@ -57,7 +58,8 @@ std::vector<Log> loop(double band, double wave) {
   log.name = "loop";
   double stem = 0.3, flow = 0, sum = 0;
   for (int i = 0; i < 1500; ++i) {
-    const double reading = flow + wave * std::sin(2 * std::numbers::pi * i / 60.0) + noise(random);
+    const double load = wave > 0 ? wave * std::sin(2 * std::numbers::pi * i / 60.0) : 0.13;
+    const double reading = flow + load + noise(random);
     sum += 0.03 * reading;
     const double command = -(wave > 0 ? 0.4 : 0.05) * reading - sum;
     if (std::abs(command - stem) > band) stem = command;
@@ -87,11 +89,13 @@ TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
   EXPECT_TRUE(shown.not_tested.empty());
 }
 
-TEST(UntestedCauses, ClosedLoopPhaseNamesAStickingValve) {
+TEST(UntestedCauses, ClosedLoopNamesAStickingValveWithItsBand) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
   correct_by_logs(d, loop(0.3, 0));
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"valve_deadband"});
   EXPECT_EQ(ids(d.partial), std::vector<std::string>{"rate_dependent_hysteresis"});
+  ASSERT_EQ(d.warnings.size(), 2U);
+  EXPECT_NE(d.warnings.back().find("dead band of about 0."), std::string::npos) << d.warnings.back();
   EXPECT_EQ(d.verdict, Verdict::partly_explained);
 }
 

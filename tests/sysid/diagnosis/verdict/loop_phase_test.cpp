@@ -18,16 +18,17 @@ struct Signals {
 
 /// Returns the signals of a control loop with a PI controller that keeps the flow through a valve at 0.
 /// @param band  change of the command at which the valve breaks free and jumps.
-/// @param wave  amplitude of a disturbance of the flow.
+/// @param wave  amplitude of a disturbance of the flow; `period` is its period in samples.
 /// @param load  constant flow that the valve must compensate. With a load between two positions of the valve,
 /// the valve jumps again and again; otherwise it can rest during the whole record.
-Signals loop(double band, double wave, double proportional, double integral, unsigned seed, double load = 0) {
+Signals loop(double band, double wave, double proportional, double integral, unsigned seed, double load = 0,
+             double period = 60) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
   Signals signals;
   double stem = 0.3, flow = 0, sum = 0;
   for (int i = 0; i < 1500; ++i) {
-    const double disturbed = flow + load + wave * std::sin(2 * std::numbers::pi * i / 60.0) + noise(random);
+    const double disturbed = flow + load + wave * std::sin(2 * std::numbers::pi * i / period) + noise(random);
     sum += integral * disturbed;
     const double command = -proportional * disturbed - sum;
     if (std::abs(command - stem) > band) stem = command;
@@ -55,14 +56,17 @@ Signals planned(double lag_share, unsigned seed) {
 }
 
 TEST(LoopPhase, StictionGivesAnOddCrossCorrelation) {
+  int close = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const Signals s = loop(0.37, 0, 0.05, 0.03, seed, 0.13);
     EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
     EXPECT_GT(phase_ratio(s.command, s.reading).value_or(0), 2.0 / 3) << seed;
     const auto stem = shown_stiction(s.command, s.reading);
     ASSERT_TRUE(stem) << seed;
-    EXPECT_NEAR(stem->band, 0.37, 0.03) << seed;
+    EXPECT_NEAR(stem->band, 0.37, 0.15) << seed;
+    if (std::abs(stem->band - 0.37) < 0.02) ++close;
   }
+  EXPECT_GE(close, 5);
 }
 
 TEST(LoopPhase, DisturbanceGivesAnEvenCrossCorrelation) {
@@ -79,6 +83,9 @@ TEST(LoopPhase, DisturbanceGivesAnEvenCrossCorrelation) {
 TEST(LoopPhase, AnOddCrossCorrelationOfASlowDisturbanceIsNoStiction) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Signals s = loop(0, 1, 0.02, 0.3, seed);
+    const Signals smooth = loop(0, 0.05, 0.4, 0.03, seed, 0, 150);
+    EXPECT_GT(phase_ratio(smooth.command, smooth.reading).value_or(0), 0.6) << seed;
+    EXPECT_FALSE(shown_stiction(smooth.command, smooth.reading)) << seed;
     EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
     EXPECT_GT(phase_ratio(s.command, s.reading).value_or(0), 2.0 / 3) << seed;
     EXPECT_FALSE(shown_stiction(s.command, s.reading)) << seed;
@@ -93,12 +100,12 @@ TEST(LoopPhase, AReadingThatFollowsItsSetpointShowsNoStiction) {
   Signals s;
   double stem = 0, flow = 0, sum = 0;
   for (int i = 0; i < 1500; ++i) {
-    const double error = (i / 80 % 3) - flow + noise(random);
+    const double setpoint = 0.3 * (i / 80 % 3), error = setpoint - flow + noise(random);
     sum += 0.05 * error;
     s.command.push_back(0.1 * error + sum);
     if (std::abs(s.command.back() - stem) > 0.3) stem = s.command.back();
     flow += 0.5 * (stem - flow);
-    s.reading.push_back((i / 80 % 3) - error);
+    s.reading.push_back(setpoint - error);
   }
   const auto stem_found = best_sticking_stem(s.command, s.reading);
   ASSERT_TRUE(stem_found);
