@@ -64,8 +64,9 @@ std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
 /// cross-validation unit (sysid/evidence/units.h).
 struct Fitted {
   std::vector<Record> driven;
-  model::Model model;  ///< model that was fitted to all records
-  LeftByUnit left;     ///< residuals of each fit
+  model::Model model;                  ///< model that was fitted to all records
+  std::vector<model::Model> left_out;  ///< for each unit, the model that was fitted to the other units
+  LeftByUnit left;                     ///< residuals of each fit
 };
 std::vector<Fitted> fit_all(const std::vector<BaseCandidate>& all, const std::vector<Record>& records,
                             const Base& base, unsigned threads) {
@@ -79,11 +80,14 @@ std::vector<Fitted> fit_all(const std::vector<BaseCandidate>& all, const std::ve
     whole[c] = all[c].fit(fits[c].driven);
     fits[c].model = whole[c].point.model;
     fits[c].left.resize(units + 1);
+    fits[c].left_out.resize(units);
     fits[c].left[units] = left_by(all[c], whole[c].point, every, fits[c].driven, base.bin_s);
   });
   parallel_for(all.size() * units, threads, [&](std::size_t task) {
     const std::size_t c = task / units, unit = task % units;
-    fits[c].left[unit] = left_without(all[c], whole[c], fits[c].driven, base.units, unit, base.bin_s);
+    LeftOutFit fit = fit_without(all[c], whole[c], fits[c].driven, base.units, unit, base.bin_s);
+    fits[c].left_out[unit] = std::move(fit.model);
+    fits[c].left[unit] = std::move(fit.left);
   });
   return fits;
 }
@@ -121,8 +125,16 @@ void choose(Base& base, const std::vector<BaseCandidate>& all, const std::vector
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       FittedFilters& filters = fits[c * kinds.size() + k];
       if (!std::isfinite(filters.left_mm)) continue;
-      models.push_back({all[c].description, fitted[c].model, kinds[k], all[c].regulator,
-                        std::move(filters.weights), filters.left_mm, std::move(filters.left)});
+      models.push_back({all[c].description,
+                        fitted[c].model,
+                        kinds[k],
+                        all[c].regulator,
+                        std::move(filters.weights),
+                        filters.left_mm,
+                        std::move(filters.left),
+                        {}});
+      for (std::size_t u = 0; u < base.units.count(); ++u)
+        models.back().left_out.push_back({fitted[c].left_out[u], filters.without[u]});
       if (is_better(compare(losses_of(models[best].left, models.back().left, base.units, base.bin_s), 0,
                             options.seed)))
         best = models.size() - 1;
@@ -214,7 +226,7 @@ Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double 
   const FittedParameters whole = play.fit(records);
   std::vector<Binned> fitted_without(units.count());
   parallel_for(units.count(), threads, [&](std::size_t unit) {
-    fitted_without[unit] = left_without(play, whole, records, units, unit, bin_s);
+    fitted_without[unit] = fit_without(play, whole, records, units, unit, bin_s).left;
   });
   Binned left = fitted_without.front();
   for (std::size_t r = 0; r < left.size(); ++r) {

@@ -42,6 +42,12 @@ inline constexpr double deviate_between_two_runs = limits::deviate * std::number
 /// of the gain (probability limits::probability).
 inline constexpr double usual_gain_difference = deviate_between_two_runs * limits::usual_gain_spread;
 
+/// Parameters of a model of the healthy finger that was fitted to all cross-validation units except one.
+struct LeftOutModel {
+  model::Model model;
+  Eigen::VectorXd filter_weights;
+};
+
 /// A model of the healthy finger: a structure with an optional regulator and an optional filter bank.
 struct HealthyModel {
   std::string description;
@@ -53,6 +59,7 @@ struct HealthyModel {
   Eigen::VectorXd filter_weights;
   double left_mm = 0;  ///< RMS residual of left-out units after subtraction of the mean of each unit
   Binned left;         ///< residual of each unit, predicted by a fit to the other units
+  std::vector<LeftOutModel> left_out;  ///< for each unit, the model that was fitted to the other units
 };
 
 /// The baseline model: the selected model of the healthy finger and its uncertainty.

@@ -143,11 +143,13 @@ Binned left_by(const BaseCandidate& candidate, const FitPoint& point, const std:
   return left;
 }
 
-Binned left_without(const BaseCandidate& candidate, const FittedParameters& whole,
-                    const std::vector<Record>& records, const Units& units, std::size_t unit, double bin_s) {
+LeftOutFit fit_without(const BaseCandidate& candidate, const FittedParameters& whole,
+                       const std::vector<Record>& records, const Units& units, std::size_t unit,
+                       double bin_s) {
   std::vector<std::size_t> kept;
   const std::vector<Record> rest = units.without(records, unit, &kept);
-  return left_by(candidate, candidate.refit(rest, for_records(whole, kept)), kept, records, bin_s);
+  const FitPoint point = candidate.refit(rest, for_records(whole, kept));
+  return {point.model, left_by(candidate, point, kept, records, bin_s)};
 }
 
 }  // namespace softgrip::sysid

@@ -49,10 +49,15 @@ struct BaseCandidate {
 [[nodiscard]] Binned left_by(const BaseCandidate& candidate, const FitPoint& point,
                              const std::vector<std::size_t>& kept, const std::vector<Record>& records,
                              double bin_s);
-/// Fits a candidate to all cross-validation units except one, and returns its residual for all records,
-/// averaged over bins. The fit starts at the parameters that were fitted to all records.
-[[nodiscard]] Binned left_without(const BaseCandidate& candidate, const FittedParameters& whole,
-                                  const std::vector<Record>& records, const Units& units, std::size_t unit,
-                                  double bin_s);
+/// A candidate that was fitted to all cross-validation units except one.
+struct LeftOutFit {
+  model::Model model;
+  Binned left;  ///< residual for all records, averaged over bins
+};
+/// Fits a candidate to all cross-validation units except one. The fit starts at the parameters that were
+/// fitted to all records.
+[[nodiscard]] LeftOutFit fit_without(const BaseCandidate& candidate, const FittedParameters& whole,
+                                     const std::vector<Record>& records, const Units& units, std::size_t unit,
+                                     double bin_s);
 
 }  // namespace softgrip::sysid

@@ -70,6 +70,7 @@ class FilterBank {
     /// rows.
     std::vector<Eigen::VectorXd> moments;
     Eigen::VectorXd plain_left, left, weights;
+    std::vector<Eigen::VectorXd> without;  ///< for each unit, the weights of the fit to all other units
     double left_mm = std::numeric_limits<double>::infinity();
   };
   [[nodiscard]] Target target_of(const LeftByUnit& left) const {
@@ -113,6 +114,8 @@ class FilterBank {
         target.left_mm = rms_mm;
         target.left = std::move(left);
         target.weights = whole.solve(target.moments[units_]).head(filter_count_);
+        target.without.clear();
+        for (const Eigen::VectorXd& own : weights[t]) target.without.emplace_back(own.head(filter_count_));
       }
     }
   }
@@ -120,11 +123,12 @@ class FilterBank {
   /// Returns the weights if the filter bank improves the predictions of the model significantly (is_better())
   /// and `is_usable_` is true. Otherwise returns a result without weights.
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
-    if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
+    const std::vector<Eigen::VectorXd> none(units_);
+    if (target.values.empty()) return {{}, none, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
     if (is_usable_ && is_better(compare(losses_of(plain, left, unit_indices_, bin_s_), 0, seed)))
-      return {target.weights, left, target.left_mm};
-    return {{}, plain, rms_of(target.plain_left)};
+      return {target.weights, target.without, left, target.left_mm};
+    return {{}, none, plain, rms_of(target.plain_left)};
   }
 
  private:

@@ -21,6 +21,7 @@ struct FittedFilters {
   /// One weight per column of filter_columns(); empty if the filter bank does not improve the prediction, or
   /// if there is only one run and the filter bank is not the only part of the model.
   Eigen::VectorXd weights;
+  std::vector<Eigen::VectorXd> without;  ///< for each unit, the weights of the fit to all other units
   Binned left;         ///< residual of each cross-validation unit, predicted by a fit to all other units;
                        ///< NaN: no reading
   double left_mm = 0;  ///< root mean square of `left`; the mean of each unit is subtracted first

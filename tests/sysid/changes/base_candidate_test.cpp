@@ -42,7 +42,7 @@ TEST(BaseCandidate, FitWithoutARunAgreesWithAFitFromTheDefaultStarts) {
       const BaseCandidate play = play_candidate(Drive::command);
       const FitPoint again = (candidate.description == play.description ? play : candidate).fit(rest).point;
       const double near_mm =
-          rms_of_run(left_without(candidate, whole, records, units, unit, finger_bin_s)[unit]);
+          rms_of_run(fit_without(candidate, whole, records, units, unit, finger_bin_s).left[unit]);
       const double far_mm = rms_of_run(left_by(candidate, again, kept, records, finger_bin_s)[unit]);
       EXPECT_NEAR(near_mm, far_mm, 0.1 * far_mm) << candidate.description << ", run " << unit;
       ++compared;
