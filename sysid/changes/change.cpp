@@ -86,7 +86,7 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
         significant(100 * usual_gain_difference, 2) +
         " % is subtracted from the displacement (more if the gains of the two halves differ by more than " +
         significant(100 * limits::usual_gain_spread, 1) +
-        " %). "
+        " %). The 95 % intervals of a change do not contain the differences between healthy runs. "
         "Record three or more healthy logs");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(

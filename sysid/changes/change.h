@@ -113,6 +113,8 @@ struct JudgedChange {
   /// True if the causes leave an error that no further healthy run is expected to have, or if the causes
   /// explain less than half of the excess error.
   bool left_over = false;
+  /// Sources of uncertainty that the 95 % intervals of the causes contain.
+  std::vector<std::string> interval_contains;
   /// Name of the only later log with such an error; empty if there is none, or if other logs also have it.
   std::string unusual_log;
   std::vector<TriedCause> tried;

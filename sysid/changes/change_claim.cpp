@@ -122,7 +122,7 @@ void add_sizes(Claim& claim, const CauseSearch& search, const FittedEffect& fitt
   const LaterReadings& readings = search.readings;
   const double deviation = readings.nuisance(search.with(fitted)).gain;
   const std::vector<FittedEffect> all = search.with(with_whole_gain(readings, fitted, deviation));
-  const std::vector<EffectIntervals> intervals = intervals_of(readings, all, search.healthy);
+  const std::vector<EffectIntervals> intervals = intervals_of(readings, all, search.healthy, search.left_out);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ShownSize shown = shown_size(readings, all[i], intervals[i]);
     const std::optional<Interval> size = distance_from_neutral(shown);

@@ -2,6 +2,7 @@
 // Tests the conditions of sysid/evidence/veto.h for a cause of a change.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,9 @@ struct CauseSearch {
   const std::vector<HealthyFits>& healthy;
   const RunSpread& spread;
   std::uint64_t seed = 1;
+  /// Readings relative to the baseline models that were fitted without one healthy unit
+  /// (left_out_readings()).
+  std::span<const LaterReadings> left_out = {};
 
   /// Returns the causes in `found`, followed by one more.
   [[nodiscard]] std::vector<FittedEffect> with(const FittedEffect& one) const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -79,6 +81,25 @@ Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::Matrix
   return solver.solve(solver.solve(spread_of_gradient(readings, slopes, white)).transpose());
 }
 
+/// Returns the covariance of the parameters in units of their steps, from the differences between the later
+/// runs: the sandwich estimator whose blocks are the runs. The readings of a run are not independent, because
+/// an error of the model or a difference of this run affects all of them.
+Eigen::MatrixXd covariance_between_runs(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
+                                        const Eigen::VectorXd& white) {
+  const auto runs = static_cast<Eigen::Index>(readings.records().size());
+  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(slopes.cols(), runs);
+  Eigen::Index row = 0;
+  for (const WhiteRows::Row& each : readings.rows().rows()) {
+    gradients.col(static_cast<Eigen::Index>(each.record)) += slopes.row(row).transpose() * white(row);
+    ++row;
+  }
+  gradients.colwise() -= gradients.rowwise().mean().eval();
+  const Eigen::LDLT<Eigen::MatrixXd> solver = curvature_of(slopes);
+  const Eigen::MatrixXd moves = solver.solve(gradients);
+  const auto n = static_cast<double>(runs);
+  return n / (n - 1) * moves * moves.transpose();
+}
+
 /// Deviation of the parameters in a healthy unit, which was left out of the fit, in units of their steps. In
 /// the unit, nothing has changed, so the deviation is an error of the baseline model or a difference between
 /// runs. One linear step from the values that were found in the later readings gives the deviation. The step
@@ -97,21 +118,47 @@ Deviation deviation_in(const LaterReadings& unit, const std::vector<FittedEffect
           solver.solve(Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols()))};
 }
 
-/// A variance with its number of degrees of freedom.
+/// A variance with its number of degrees of freedom; infinity: the variance counts as known.
 struct Variance {
-  double value = 0, freedom = 1;
+  double value = 0, freedom = std::numeric_limits<double>::infinity();
 };
 
-/// Returns the variance of the difference between the mean of the later runs and the mean of the n healthy
-/// units, because of the differences between runs. The variance between runs is the mean square of the
-/// deviations, weighted with their accuracy. A unit is predicted from the n - 1 other units, so its mean
-/// square is larger by n / (n - 1) than the variance between runs. The noise within the units is not
-/// subtracted, because the later runs are also predicted from healthy runs with noise. Runs differ in
-/// limits::run_directions quantities, so each unit after the first has this number of degrees of freedom, as
-/// in the detection of a change.
+/// Variance of the estimates from the later readings, with a constant baseline model. Blocks of some seconds
+/// show the noise, but not the differences between runs. The runs show both, with fewer degrees of freedom.
+/// The larger one of the two variances is used. Two runs have only one degree of freedom, so fewer than three
+/// runs are not used.
+class LaterVariance {
+ public:
+  LaterVariance(const LaterReadings& readings, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& white)
+      : by_block_(covariance_of(readings, slopes, white)),
+        runs_(static_cast<double>(readings.records().size())) {
+    if (are_enough(readings.records().size())) by_run_ = covariance_between_runs(readings, slopes, white);
+  }
+  [[nodiscard]] static bool are_enough(std::size_t runs) { return runs >= 3; }
+  [[nodiscard]] Variance by_block(const Eigen::VectorXd& step) const {
+    return {.value = step.dot(by_block_ * step)};
+  }
+  [[nodiscard]] Variance of(const Eigen::VectorXd& step) const {
+    const Variance block = by_block(step);
+    if (by_run_.size() == 0) return block;
+    const double run = step.dot(by_run_ * step);
+    return run > block.value ? Variance{run, runs_ - 1} : block;
+  }
+
+ private:
+  Eigen::MatrixXd by_block_, by_run_;
+  double runs_;
+};
+
+/// Returns the variance of a later run, because of the differences between runs and the errors of the
+/// structure of the baseline model: the mean square of the deviations, weighted with their accuracy. A unit
+/// is predicted from the n - 1 other units, so its mean square is larger by n / (n - 1) than the variance
+/// between runs. The variance is not divided by the number of later runs, because an error of the structure
+/// is the same in all of them. The noise within the units is not subtracted, because the later runs are also
+/// predicted from healthy runs with noise. The differences between n runs have n - 1 degrees of freedom. The
+/// two halves of one run contain no difference between runs, and each half has its own error.
 /// @param slopes  derivatives of the quantity with respect to the steps of the parameters.
-Variance between_runs(const std::vector<Deviation>& deviations, const Eigen::VectorXd& slopes,
-                      std::size_t later_runs) {
+Variance of_a_run(const std::vector<Deviation>& deviations, const Eigen::VectorXd& slopes, bool are_runs) {
   double squares = 0, weights = 0;
   for (const Deviation& each : deviations) {
     const double noise = slopes.dot(each.covariance * slopes);
@@ -121,8 +168,40 @@ Variance between_runs(const std::vector<Deviation>& deviations, const Eigen::Vec
   }
   const auto n = static_cast<double>(deviations.size());
   if (!(weights > 0) || n < 2) return {};
-  const double between = squares / weights * (n - 1) / n;
-  return {between * (1 / static_cast<double>(later_runs) + 1 / n), limits::run_directions * (n - 1)};
+  return {squares / weights * (n - 1) / n, are_runs ? n - 1 : n};
+}
+
+/// Returns the parameters that result from the baseline models which were fitted without one unit, minus the
+/// parameters that result from the fit to all units, in units of the steps. One linear step in the later
+/// readings gives each difference.
+/// @param left_out  later readings relative to each of these models.
+std::vector<Eigen::VectorXd> moves_without_a_unit(std::span<const LaterReadings> left_out,
+                                                  const std::vector<FittedEffect>& found,
+                                                  const Eigen::MatrixXd& slopes,
+                                                  const Eigen::VectorXd& white) {
+  const Eigen::LDLT<Eigen::MatrixXd> solver = curvature_of(slopes);
+  std::vector<Eigen::VectorXd> moves;
+  for (const LaterReadings& each : left_out) {
+    const Eigen::VectorXd other = each.white_and_gain(found);
+    if (other.size() == white.size() && other.allFinite())
+      moves.push_back(-solver.solve(slopes.transpose() * (other - white)));
+  }
+  return moves;
+}
+
+/// Returns the variance because of the uncertainty of the baseline model: the delete-one jackknife over the
+/// healthy units (Efron and Tibshirani, An Introduction to the Bootstrap, 1993, chapter 11). The degrees of
+/// freedom are those of of_a_run().
+Variance of_the_baseline(const std::vector<Eigen::VectorXd>& moves, const Eigen::VectorXd& slopes,
+                         bool are_runs) {
+  const auto n = static_cast<double>(moves.size());
+  if (n < 2) return {};
+  double sum = 0, squares = 0;
+  for (const Eigen::VectorXd& each : moves) {
+    sum += slopes.dot(each);
+    squares += square(slopes.dot(each));
+  }
+  return {std::max(0.0, squares - sum * sum / n) * (n - 1) / n, are_runs ? n - 1 : n};
 }
 
 /// Returns the part of the variance of a gain change that covariance_of() lacks. The later readings contain
@@ -132,14 +211,17 @@ Variance of_healthy_gain(const Base& base) {
   return {square(base.gain_spread) / runs, runs - 1 + limits::usual_gain_runs};
 }
 
-/// Returns the interval of a value with two variances (Student's t). The number of degrees of freedom follows
-/// from Welch (Biometrika 34, 1947); the first variance counts as known.
-std::optional<Interval> interval(double value, double within, const Variance& between) {
-  const double variance = within + between.value;
+/// Returns the interval of a value whose variance is the sum of several variances (Student's t). The number
+/// of degrees of freedom follows from Welch (Biometrika 34, 1947).
+std::optional<Interval> interval(double value, std::initializer_list<Variance> parts) {
+  double variance = 0, uncertain = 0;
+  for (const Variance& part : parts) {
+    variance += part.value;
+    uncertain += square(part.value) / part.freedom;
+  }
   if (!std::isfinite(variance) || !(variance > 0)) return std::nullopt;
   static_assert(limits::probability == 0.95);
-  const double quantile =
-      between.value > 0 ? t_quantile(square(variance / between.value) * between.freedom) : limits::deviate;
+  const double quantile = uncertain > 0 ? t_quantile(square(variance) / uncertain) : limits::deviate;
   const double half = quantile * std::sqrt(variance);
   return Interval{value - half, value + half};
 }
@@ -173,21 +255,33 @@ std::optional<Interval> with_zero(std::optional<Interval> interval, double zero_
 
 std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
                                           const std::vector<FittedEffect>& found,
-                                          const std::vector<HealthyFits>& healthy) {
+                                          const std::vector<HealthyFits>& healthy,
+                                          std::span<const LaterReadings> left_out) {
   const std::vector<Place> places = places_of(found);
   const Eigen::VectorXd white = readings.white_and_gain(found);
   const Eigen::MatrixXd slopes = slopes_of(readings, found, places, white);
-  const Eigen::MatrixXd covariance = covariance_of(readings, slopes, white);
+  const LaterVariance later(readings, slopes, white);
   std::vector<Deviation> deviations;
   for (const HealthyFits& unit : healthy) deviations.push_back(deviation_in(unit.readings, found, places));
-  const std::size_t runs = readings.records().size();
+  const std::vector<Eigen::VectorXd> moves = moves_without_a_unit(left_out, found, slopes, white);
+  const bool are_runs = readings.base().units.are_runs();
+  const auto interval_of = [&](double value, const Eigen::VectorXd& step) {
+    return interval(value, {later.of(step), of_a_run(deviations, step, are_runs),
+                            of_the_baseline(moves, step, are_runs)});
+  };
+  // `unit` converts a gain to the unit of the value.
+  const auto interval_of_gain = [&](double value, const Eigen::VectorXd& step, double unit) {
+    Variance healthy_gain = of_healthy_gain(readings.base());
+    healthy_gain.value *= square(unit);
+    return interval(value, {later.by_block(step), healthy_gain});
+  };
   const double zero_mm = readings.nuisance(found).zero_mm;
   std::vector<EffectIntervals> all(found.size());
   for (std::size_t e = 0; e < found.size(); ++e) {
     const FittedEffect& effect = found[e];
     const bool is_gain = is_sized_by_both_gains(effect);
     const double size = size_with(readings, effect);
-    Eigen::VectorXd size_slopes = Eigen::VectorXd::Zero(covariance.rows());
+    Eigen::VectorXd size_slopes = Eigen::VectorXd::Zero(slopes.cols());
     for (std::size_t c = 0; c < places.size(); ++c) {
       const Place& place = places[c];
       if (place.effect != e) continue;
@@ -196,25 +290,32 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
       const EffectNumber& number = effect.effect.numbers[place.number];
       std::optional<Interval> own;
       if (felt) {
-        const Eigen::VectorXd step = place.by * Eigen::VectorXd::Unit(covariance.rows(), i);
-        own = interval(effect.numbers[place.number], step.dot(covariance * step),
-                       is_gain ? of_healthy_gain(readings.base()) : between_runs(deviations, step, runs));
+        const Eigen::VectorXd step = place.by * Eigen::VectorXd::Unit(slopes.cols(), i);
+        const double value = effect.numbers[place.number];
+        own = within(number, is_gain ? interval_of_gain(value, step, 1) : interval_of(value, step));
       }
-      all[e].numbers.push_back(within(number, is_position(number) ? with_zero(own, zero_mm) : own));
+      if (is_position(number)) own = with_zero(own, zero_mm);
+      all[e].numbers.push_back(own);
       // A step of the gain of the effect changes the gain within the spread by the opposite amount. The sum
       // of both would seem to be known exactly.
       if (felt)
         size_slopes(i) = is_gain ? 100 * place.by : size_with(readings, moved(found, place)[e]) - size;
     }
-    const double size_variance = size_slopes.dot(covariance * size_slopes);
-    Variance between = between_runs(deviations, size_slopes, runs);
-    if (is_gain) {
-      between = of_healthy_gain(readings.base());
-      between.value *= square(100.0);
-    }
-    if (size_variance > 0) all[e].size = interval(size, size_variance, between);
+    if (later.by_block(size_slopes).value > 0)
+      all[e].size = is_gain ? interval_of_gain(size, size_slopes, 100) : interval_of(size, size_slopes);
   }
   return all;
+}
+
+std::vector<std::string> contained_in_intervals(const Base& base, std::size_t later_runs) {
+  std::vector<std::string> sources{"noise of the later logs"};
+  if (LaterVariance::are_enough(later_runs)) sources.emplace_back("differences between the later logs");
+  sources.emplace_back("uncertainty of the baseline model");
+  if (base.units.are_runs())
+    sources.emplace_back("differences between the healthy logs");
+  else
+    sources.emplace_back("error between the two halves of the healthy log");
+  return sources;
 }
 
 }  // namespace softgrip::sysid

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "sysid/changes/change_size.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/healthy_runs.h"
+#include "sysid/changes/left_out_bases.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/evidence/veto.h"
@@ -115,6 +117,7 @@ class Judge {
     judged.base = base_.description;
     judged.healthy_runs = base_.units.runs();
     judged.noise_mm = base_.noise_mm;
+    judged.interval_contains = contained_in_intervals(base_, later.size());
     judged.healthy_mm = spread_.usual_rms();
     judged.allowed_mm = spread_.allowed_rms();
     judged.input_factor = spread_.input_factor();
@@ -124,6 +127,8 @@ class Judge {
     const std::vector<std::string> other_starts = readings.other_starts();
     for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
     const bool has_another_input = base_.judged == Judged::displacement && has_changed_pressure(diagnosis);
+    std::vector<Base> left_out_base;
+    std::vector<LaterReadings> left_out;
     std::vector<FittedEffect> found;
     Eigen::VectorXd white = readings.white(found);
     judged.loss_before = judged.loss_left = per_bin(readings, white);
@@ -147,8 +152,12 @@ class Judge {
                                   each.usual, each.tolerance, is_large ? "" : reason_for_no_search});
       }
       if (!is_large) break;
-      const std::optional<ChangeCause> cause =
-          first_change({readings, found, white, healthy_, spread_, options_.seed}, std::move(ranked), judged);
+      if (step == 0) {
+        left_out_base = left_out_bases(base_);
+        left_out = left_out_readings(left_out_base, later, residuals);
+      }
+      const std::optional<ChangeCause> cause = first_change(
+          {readings, found, white, healthy_, spread_, options_.seed, left_out}, std::move(ranked), judged);
       if (!cause) break;
       diagnosis.causes.push_back(*cause);
       found.push_back(cause->fitted);
@@ -156,7 +165,7 @@ class Judge {
       judged.loss_left = per_bin(readings, white);
     }
     accept_named(diagnosis.causes, judged);
-    add_sizes(readings, found, diagnosis.causes);
+    add_sizes(readings, left_out, found, diagnosis.causes);
     finish(readings, effects, found, judged);
     if (!found.empty() && judged.unusual_log.empty() && judged.explained_share < limits::majority_share)
       leave_unnamed(diagnosis, judged);
@@ -299,9 +308,9 @@ class Judge {
 
   /// Adds the sizes and the intervals to the causes in this quantity.
   /// @param found  effects of these causes, in the same order.
-  void add_sizes(const LaterReadings& readings, const std::vector<FittedEffect>& found,
-                 std::vector<ChangeCause>& causes) const {
-    const std::vector<EffectIntervals> intervals = intervals_of(readings, found, healthy_);
+  void add_sizes(const LaterReadings& readings, std::span<const LaterReadings> left_out,
+                 const std::vector<FittedEffect>& found, std::vector<ChangeCause>& causes) const {
+    const std::vector<EffectIntervals> intervals = intervals_of(readings, found, healthy_, left_out);
     auto next = intervals.begin();
     for (ChangeCause& cause : causes) {
       if (cause.judged != base_.judged || cause.fitted.effect.id.empty()) continue;

@@ -289,6 +289,7 @@ Fields fields_of(const JudgedChange& judged) {
       {"misfit", loss},
       {"unexplained", judged.left_over},
       {"unusual_log", judged.unusual_log},
+      {"interval_contains", "the 95 % intervals contain", judged.interval_contains},
       {"structure_left", judged.left_over},
       {"zero", "change of the zero offset", number(judged.zero_mm, 2, unit)},
       {"gain_percent", "gain change within the spread of healthy runs", number(judged.gain_percent, 2, "%")},
