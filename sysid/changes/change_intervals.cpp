@@ -239,17 +239,23 @@ double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }
 
-/// Returns true for a position of the finger or a limit of the sensor. If the zero of the later runs differs
-/// from the zero of the healthy runs, the difference can be an offset of the sensor or a displacement of the
-/// finger. Only one of them shifts a position, so the interval must contain the value with and without it.
+/// Returns true for a position of the finger or a limit of the sensor.
 bool is_position(const EffectNumber& number) {
   return number.name == "position_mm" || number.name == "upper_mm" || number.name == "lower_mm";
 }
 
-std::optional<Interval> with_zero(std::optional<Interval> interval, double zero_mm) {
-  if (interval) (zero_mm > 0 ? interval->upper : interval->lower) += zero_mm;
-  return interval;
-}
+/// A position in the readings. The baseline model has its own zero, so a position in the readings is a
+/// position in the model plus the zero offset of the readings. If the zero of the later readings differs from
+/// the zero of the healthy readings, the difference can be an offset of the sensor or a displacement of the
+/// finger. The interval therefore contains the position in the healthy readings too.
+struct Zero {
+  double later_mm = 0, healthy_mm = 0;
+  [[nodiscard]] std::optional<Interval> of_readings(std::optional<Interval> in_model) const {
+    if (!in_model) return in_model;
+    return Interval{in_model->lower + std::min(later_mm, healthy_mm),
+                    in_model->upper + std::max(later_mm, healthy_mm)};
+  }
+};
 
 }  // namespace
 
@@ -275,13 +281,14 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
     healthy_gain.value *= square(unit);
     return interval(value, {later.by_block(step), healthy_gain});
   };
-  const double zero_mm = readings.nuisance(found).zero_mm;
+  const Zero zero{readings.nuisance(found).zero_mm, readings.base().zero_mm};
   std::vector<EffectIntervals> all(found.size());
   for (std::size_t e = 0; e < found.size(); ++e) {
     const FittedEffect& effect = found[e];
     const bool is_gain = is_sized_by_both_gains(effect);
     const double size = size_with(readings, effect);
     Eigen::VectorXd size_slopes = Eigen::VectorXd::Zero(slopes.cols());
+    all[e].values = effect.numbers;
     for (std::size_t c = 0; c < places.size(); ++c) {
       const Place& place = places[c];
       if (place.effect != e) continue;
@@ -294,7 +301,10 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
         const double value = effect.numbers[place.number];
         own = within(number, is_gain ? interval_of_gain(value, step, 1) : interval_of(value, step));
       }
-      if (is_position(number)) own = with_zero(own, zero_mm);
+      if (is_position(number)) {
+        all[e].values[place.number] += zero.later_mm;
+        own = zero.of_readings(own);
+      }
       all[e].numbers.push_back(own);
       // A step of the gain of the effect changes the gain within the spread by the opposite amount. The sum
       // of both would seem to be known exactly.

@@ -15,6 +15,8 @@ namespace softgrip::sysid {
 /// Parameters of one effect with their 95 % confidence intervals. An interval is missing if the parameter has
 /// no effect on the readings.
 struct EffectIntervals {
+  std::vector<double> values;  ///< values of the parameters; a position is stated in the later readings,
+                               ///< including their zero offset
   std::vector<std::optional<Interval>> numbers;  ///< intervals of the parameters, limited to the permitted
                                                  ///< range of each parameter
   std::optional<Interval> size;                  ///< interval of the result of size_of()

@@ -23,7 +23,7 @@ Fields fields_of_cause(const ChangeCause& cause) {
   Fields parameters;
   for (std::size_t i = 0; i < cause.fitted.numbers.size(); ++i) {
     const EffectNumber& number = cause.fitted.effect.numbers[i];
-    const Fields fitted{{"value", cause.fitted.numbers[i]},
+    const Fields fitted{{"value", cause.intervals.values[i]},
                         {"ci95", interval_value(cause.intervals.numbers[i])}};
     parameters.emplace_back(number.name, fitted);
     parameters.emplace_back(number.formerly, fitted);  // an empty key is not written

@@ -36,7 +36,7 @@ ShownSize size_by_parameter(const FittedEffect& effect, const EffectIntervals& i
   const EffectNumber& number = effect.effect.numbers[i];
   // The further clauses of the description do not belong to the name of the quantity.
   const std::string name = number.meaning.substr(0, number.meaning.find_first_of(",;"));
-  return {{name.empty() ? number.name : name, effect.numbers[i], number.unit},
+  return {{name.empty() ? number.name : name, intervals.values[i], number.unit},
           intervals.numbers[i],
           effect.effect.nothing[i]};
 }
@@ -49,9 +49,9 @@ std::optional<std::size_t> most_significant(const FittedEffect& effect, const Ef
   double farthest = 1;
   for (std::size_t i = 0; i + effect.effect.nuisance_numbers < effect.numbers.size(); ++i) {
     const EffectNumber& number = effect.effect.numbers[i];
-    const double value = effect.numbers[i], neutral = effect.effect.nothing[i];
+    const double value = intervals.values[i], neutral = effect.effect.nothing[i];
     if (!intervals.numbers[i] || !std::isfinite(neutral)) continue;
-    if (!(value > number.lower && value < number.upper)) continue;
+    if (!(effect.numbers[i] > number.lower && effect.numbers[i] < number.upper)) continue;
     // The interval is limited to the range of the parameter, so one of its halves can be too narrow.
     const double half = std::max(value - intervals.numbers[i]->lower, intervals.numbers[i]->upper - value);
     const double distance = std::abs(value - neutral) / half;

@@ -69,7 +69,7 @@ class Shown : public test::PressureBase {
     return {effect, {0.1}};
   }
   [[nodiscard]] ShownSize shown(const FittedEffect& effect, const Interval& size) const {
-    return shown_size(readings_, effect, {{Interval{0.05, 0.15}}, size});
+    return shown_size(readings_, effect, {effect.numbers, {Interval{0.05, 0.15}}, size});
   }
 
   const LaterReadings readings_ = healthy_readings(base_);

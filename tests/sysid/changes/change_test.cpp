@@ -269,6 +269,22 @@ TEST(Change, SaturationJustBelowTheLargestReadingIsFound) {
   EXPECT_GT(d.causes[0].intervals.numbers[0]->upper, end_mm);
 }
 
+TEST(Change, APositionIsStatedInTheReadings) {
+  // The zero of both groups of logs is far from the zero of the baseline model.
+  constexpr double zero_mm = 4, stop_mm = 8;
+  const auto healthy = logs_of({.zero_mm = zero_mm}, 1),
+             later = logs_of({.stop_mm = stop_mm, .zero_mm = zero_mm}, 5);
+  const auto d = diagnose_change(healthy, later, {});
+  ASSERT_TRUE(d && !d->causes.empty());
+  const ChangeCause& cause = d->causes[0];
+  EXPECT_TRUE(cause.id == "contact" || cause.id == "sensor_saturation") << cause.id;
+  EXPECT_NEAR(cause.intervals.values.at(0), zero_mm + stop_mm, 0.3);
+  EXPECT_NEAR(cause.fitted.numbers.at(0), stop_mm, 0.3) << "in the model, the zero is subtracted";
+  ASSERT_TRUE(cause.intervals.numbers.at(0));
+  EXPECT_LT(cause.intervals.numbers[0]->lower, zero_mm + stop_mm);
+  EXPECT_GT(cause.intervals.numbers[0]->upper, zero_mm + stop_mm);
+}
+
 TEST(Change, LeakIsFoundInThePressureRecordOnly) {
   const ChangeDiagnosis d = changed({.lost_kpa_per_s = 0.8}, true);
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -502,6 +518,7 @@ TEST(ChangeResult, ParametersHaveTheDeprecatedNameBesideTheName) {
   cause.fitted.effect.numbers = {{"saturation_per_kpa", "1/kPa", 1, 0, 1, "levelling_per_kpa"},
                                  {"softening_per_kpa", "1/kPa", 1, 0, 1}};
   cause.fitted.numbers = {0.02, 0.004};
+  cause.intervals.values = cause.fitted.numbers;
   cause.intervals.numbers = {std::nullopt, std::nullopt};
   const auto parameters = result::json_of(fields_of(d))["causes"][0]["parameters"];
   EXPECT_EQ(parameters.size(), 3U);
