@@ -89,8 +89,8 @@ std::vector<BaseCandidate> base_candidates(const std::vector<Record>& records, J
       play,
       {"Bouc-Wen and two creep branches",
        {},
-       [&options, drive](const std::vector<Record>& driven) -> FittedParameters {
-         return {fit_published(driven, drive, limits::repeated_starts, options.seed).point, {}};
+       [seed = options.seed, drive](const std::vector<Record>& driven) -> FittedParameters {
+         return {fit_published(driven, drive, limits::repeated_starts, seed).point, {}};
        },
        [](const std::vector<Record>& driven, const FittedParameters& near) {
          return refit_published(driven, near.point);
