@@ -9,7 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "base/numbers.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
@@ -17,6 +16,7 @@
 #include "sysid/changes/change_claim.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
+#include "sysid/changes/change_warnings.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/healthy_runs.h"
 #include "sysid/changes/left_out_bases.h"
@@ -41,43 +41,10 @@ double rms_about_mean(const std::vector<double>& series) {
   return sums.count > 0 ? std::sqrt(std::max(0.0, sums.variance_x())) / sums.count : 0;
 }
 
-std::string other_start(const std::string& record) {
-  return "No healthy log begins in the same state (pressurised or vented) as " + record +
-         ", so a slow change after the start of this log is not evaluated. Record a healthy log that begins "
-         "in this state";
-}
-
-std::string unfamiliar_input(double factor) {
-  return "The input of the later logs is unlike the inputs of the healthy logs: models that predict the "
-         "healthy logs within their spread disagree about the later logs. The permitted error and the "
-         "tolerances are therefore larger by a factor of up to " +
-         significant(factor, 2) + " (mean square). Record a healthy log with such an input";
-}
-
-std::string unfamiliar_commands(double share) {
-  return significant(100 * share, 2) +
-         " % of the measured pressures of the later logs are not evaluated, because there the command is "
-         "much farther from the pressure than in any healthy log. Record a healthy log with such steps";
-}
-
-std::string unusual_log(const std::string& record) {
-  return "The error in " + record +
-         " is larger than expected for a further healthy run, but the error in the other later logs is not. "
-         "A change appears in every later log, so this difference is not reported as a change. Record " +
-         record + " again";
-}
-
 /// Returns true if the gain of the later logs differs from the healthy gain by more than the gains of two
 /// runs of a finger usually differ.
 bool has_unusual_gain(const JudgedChange& judged) {
   return std::abs(judged.gain_percent) > 100 * usual_gain_difference;
-}
-
-std::string unusual_gain(double percent, bool is_limited) {
-  return "The gain in the later logs is " + std::string(is_limited ? "at least " : "") +
-         significant(std::abs(percent), 3) + " % " + (percent < 0 ? "lower" : "higher") +
-         " than the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
-         "this difference is not significant. Record more healthy logs";
 }
 
 /// Returns true if the measured pressure has changed, with or without a known cause.

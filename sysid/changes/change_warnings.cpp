@@ -1,0 +1,42 @@
+#include "sysid/changes/change_warnings.h"
+
+#include <cmath>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+
+std::string other_start(const std::string& record) {
+  return "No healthy log begins in the same state (pressurised or vented) as " + record +
+         ", so a slow change after the start of this log is not evaluated. Record a healthy log that begins "
+         "in this state";
+}
+
+std::string unfamiliar_input(double factor) {
+  return "The input of the later logs is unlike the inputs of the healthy logs: models that predict the "
+         "healthy logs within their spread disagree about the later logs. The permitted error and the "
+         "tolerances are therefore larger by a factor of up to " +
+         significant(factor, 2) + " (mean square). Record a healthy log with such an input";
+}
+
+std::string unfamiliar_commands(double share) {
+  return significant(100 * share, 2) +
+         " % of the measured pressures of the later logs are not evaluated, because there the command is "
+         "much farther from the pressure than in any healthy log. Record a healthy log with such steps";
+}
+
+std::string unusual_log(const std::string& record) {
+  return "The error in " + record +
+         " is larger than expected for a further healthy run, but the error in the other later logs is not. "
+         "A change appears in every later log, so this difference is not reported as a change. Record " +
+         record + " again";
+}
+
+std::string unusual_gain(double percent, bool is_limited) {
+  return "The gain in the later logs is " + std::string(is_limited ? "at least " : "") +
+         significant(std::abs(percent), 3) + " % " + (percent < 0 ? "lower" : "higher") +
+         " than the gain in the healthy logs. The predictions of the healthy logs are so inaccurate that "
+         "this difference is not significant. Record more healthy logs";
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,24 @@
+#pragma once
+// Sentences of the warnings that a diagnosis of a change gives about the later logs.
+
+#include <string>
+
+namespace softgrip::sysid {
+
+/// @param record  later log that begins in a state (pressurised or vented) in which no healthy log begins.
+[[nodiscard]] std::string other_start(const std::string& record);
+
+/// @param factor  factor by which the unfamiliar input increases the permitted mean square error.
+[[nodiscard]] std::string unfamiliar_input(double factor);
+
+/// @param share  share of the measured pressures that are not evaluated, 0 .. 1.
+[[nodiscard]] std::string unfamiliar_commands(double share);
+
+/// @param record  the only later log whose error is larger than expected for a further healthy run.
+[[nodiscard]] std::string unusual_log(const std::string& record);
+
+/// @param percent  difference of the gain in the later logs from the healthy gain [%]; it is not significant.
+/// @param is_limited  true: the difference is the largest one that the fit permits.
+[[nodiscard]] std::string unusual_gain(double percent, bool is_limited);
+
+}  // namespace softgrip::sysid
