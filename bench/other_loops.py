@@ -2,7 +2,7 @@
 """Simulates industrial control loops with and without a sticking valve, and judges whether softgrip names stiction.
 
     bench/other_loops.py --out DIR [--program PROGRAM] [--halves first second] [--kinds KIND ...] [--logs DIR]
-                         [--only-logs] [--page [FILE]]
+                         [--only-logs] [--at-most-s 3600] [--page [FILE]]
 
 Each half has 48 loops with a sticking valve (12 per friction model) and 42 other loops (3 per kind). The logs are written to
 --logs (default: DIR/loops) if this folder does not contain them. Each loop is identified with `softgrip identify` and then
@@ -51,13 +51,17 @@ def parsed(words):
 
 def run(options):
     values = {"schema": 1, "version": output_of([options.program, "--version"], 60).strip(), "halves": options.halves,
-              "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), "cases": []}
+              "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), "at_most_s": options.at_most_s, "cases": []}
     for half in options.halves:
         for case in loop_judge.judged_half(options, half):
             values["cases"].append(case)
             print(f"{half} | {' | '.join(str(cell) for cell in loop_page.case_row(case))}", flush=True)
             write_whole(options.out / "results.json", json.dumps(values, indent=1) + "\n")
     return values
+
+
+def command_of(options):
+    return f"bench/other_loops.py --out DIR --halves {' '.join(options.halves)} --at-most-s {options.at_most_s:g} --page"
 
 
 def main(words=None):
@@ -74,7 +78,7 @@ def main(words=None):
     values = run(options)
     print("\n".join(loop_page.screen_lines(values)))
     if options.page:
-        loop_page.write(options.page, values, f"bench/other_loops.py --out DIR --halves {' '.join(options.halves)} --page")
+        loop_page.write(options.page, values, command_of(options))
         print(f"page: {options.page}")
     return 1 if any(case["outcome"] == "failed" for case in values["cases"]) else 0
 

@@ -1,7 +1,7 @@
 """Writes the logs of the simulated loops with the table that bench/foreign.py reads, and judges the answers of softgrip."""
 import json
 
-from outcomes import Failed, write_whole
+from outcomes import UNREADABLE, Failed, described, write_whole
 from runner import Runner
 import judge_stiction
 import set_table
@@ -50,8 +50,8 @@ def judged_half(options, half):
         try:
             case.update(judge_stiction.judge_loop(runner, data_set, loop))
             case["outcome"] = "named" if case["stiction_named"] else "listed" if case["stiction_listed"] else "not"
-        except Failed as failed:
-            case.update(verdict="-", named=[], alternatives=[], partial=[], sizes=[], outcome="failed", error=str(failed),
+        except (Failed, *UNREADABLE) as failed:
+            case.update(verdict="-", named=[], alternatives=[], partial=[], sizes=[], outcome="failed", error=described(failed),
                         horch="-", drift_alone=False, diagnosis_s=None)
         yield {**case, **runner.cost()}
 
@@ -61,22 +61,22 @@ def group_of(case):
 
 
 def counts(cases):
-    """Returns rows (sentence, count, total) for the cases of one half."""
+    """Returns rows (sentence, count, total) for the cases of one half. An error of softgrip counts as not named."""
     good = [case for case in cases if case["outcome"] != "failed"]
     rows = []
     for group, text in (("visible", "sticking valves with a visible effect"),
                         ("hidden", "sticking valves without a visible effect"), ("others", "other loops")):
-        of_group = [case for case in good if group_of(case) == group]
-        if not of_group:
+        outcomes = [case["outcome"] for case in cases if group_of(case) == group]
+        if not outcomes:
             continue
-        outcomes = [case["outcome"] for case in of_group]
-        rows += [(f"{text}: `valve_deadband` named", outcomes.count("named"), len(of_group)),
-                 (f"{text}: `valve_deadband` named or listed", len(outcomes) - outcomes.count("not"), len(of_group)),
-                 (f"{text}: reported as sticking by Horch's phase test",
-                  sum(case["horch"] == "sticks" for case in of_group), len(of_group))]
-    rows += [("all loops: `sensor_drift` named alone", sum(case["drift_alone"] for case in good), len(good)),
-             ("all loops: softgrip reported an error", len(cases) - len(good), len(cases))]
-    return rows
+        tested = [case["horch"] for case in good if group_of(case) == group]
+        rows += [(f"{text}: `valve_deadband` named", outcomes.count("named"), len(outcomes)),
+                 (f"{text}: `valve_deadband` named or listed", outcomes.count("named") + outcomes.count("listed"),
+                  len(outcomes)),
+                 (f"{text}: softgrip reported an error", outcomes.count("failed"), len(outcomes)),
+                 (f"{text} without an error: reported as sticking by Horch's phase test", tested.count("sticks"),
+                  len(tested))]
+    return [*rows, ("all loops: `sensor_drift` named alone", sum(case["drift_alone"] for case in cases), len(cases))]
 
 
 def share_text(limits):
@@ -85,7 +85,7 @@ def share_text(limits):
 
 def groups_of_sticking(cases):
     """Yields (text, cases) for the sticking loops with a visible effect: by model, process, share, and with J = 0."""
-    visible = [case for case in cases if case["outcome"] != "failed" and group_of(case) == "visible"]
+    visible = [case for case in cases if group_of(case) == "visible"]
     for key, text in (("model", "model"), ("process", "process")):
         for value in sorted({case[key] for case in visible}):
             yield f"{text}: {value.replace('_', ' ')}", [case for case in visible if case[key] == value]

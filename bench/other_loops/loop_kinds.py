@@ -31,7 +31,7 @@ OTHERS = {
     "saturated": "load that exceeds the range of the valve at times",
     "sensor_band": "sensor that ignores small changes, or has a coarse resolution",
     "interacting": "second loop, aggressive or with a sticking valve, disturbs the loop",
-    "compressed": "steps and a wandering load, recorded with strong compression"}
+    "compressed": "steps and a slowly varying load, recorded with strong compression"}
 
 
 @dataclasses.dataclass
