@@ -93,11 +93,13 @@ std::optional<WrongFirstReadings> wrong_first_readings(const Log& log) {
     const Beginning command(log.pressure_command_kpa, samples), pressure(log.pressure_kpa, samples);
     if (command.steps() || pressure.steps()) continue;
     const auto [lowest, highest] = std::ranges::minmax(first);
+    const std::vector<double> after = finite(rest.first(std::min(limits::fewest_events, rest.size())));
+    const bool still = isolated_alone * width(after) < jump_mm;
     const bool alone = std::ranges::none_of(rest, [&, low_mm = lowest, high_mm = highest](double y) {
       return y > low_mm - 0.5 * jump_mm && y < high_mm + 0.5 * jump_mm;
     });
     if (jump_mm > faster_than_the_finger * largest_step(rest) ||
-        (alone && !command.changes_by_more_than(steady_drive_share) &&
+        (still && alone && !command.changes_by_more_than(steady_drive_share) &&
          !pressure.changes_by_more_than(different_command_share)))
       return WrongFirstReadings{count, readings.sample[count - 1] + 1, first.back(), rest.front()};
   }

@@ -26,8 +26,9 @@ struct WrongFirstReadings {
 ///   more than 10 % of its range.
 /// - The jump is more than 4 times the largest step between neighbouring readings in the rest of the log, so
 ///   that the finger cannot move so fast. Or the pressures change by at most 1 % (command) and 10 % (measured
-///   pressure) of their range, and no reading in the rest of the log is within half of the jump around the
-///   first readings.
+///   pressure) of their range, the next 20 readings differ by less than a quarter of the jump, so that the
+///   finger rests, and no reading in the rest of the log is within half of the jump around the first
+///   readings.
 [[nodiscard]] std::optional<WrongFirstReadings> wrong_first_readings(const Log& log);
 
 }  // namespace softgrip::sysid

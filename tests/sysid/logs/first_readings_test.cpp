@@ -89,6 +89,23 @@ TEST(WrongFirstReadings, StepOfTheCommandExplainsAJump) {
   }
 }
 
+/// A log may begin with a step of the command, whose effect appears after a delay. The finger then moves
+/// away from its first position and does not return to it. The sensor is slower than the log.
+TEST(WrongFirstReadings, BeginningOfAMotionAfterADelayIsKept) {
+  constexpr std::size_t held = 5;
+  for (const std::size_t late : {3U, 9U, 18U}) {
+    for (const double lag_samples : {5.0, 20.0, 100.0}) {
+      Log log = moving();
+      for (std::size_t i = 0; i < log.size(); ++i) {
+        log.pressure_command_kpa[i] = i < 1000 ? 100 : 60;
+        const auto since = i < late ? 0.0 : static_cast<double>((i - late) / held * held + held);
+        log.displacement_mm[i] = 30 * (1 - std::exp(-since / lag_samples)) - (i < 1000 ? 0 : 5);
+      }
+      EXPECT_FALSE(wrong_first_readings(log)) << late << ' ' << lag_samples;
+    }
+  }
+}
+
 /// The pressure may rise although the command is constant, because the command changed before the log began.
 TEST(WrongFirstReadings, StepOfTheMeasuredPressureExplainsAJump) {
   Log log = stepping(0, false);
