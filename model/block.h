@@ -64,6 +64,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "model/dual.h"
 #include "model/parameter.h"
@@ -150,6 +151,25 @@ struct Preparation {
   double sample_time_s = 0;  ///< nominal sample time [s]; 0: the times between samples are irregular
   std::uint64_t seed = 0;    ///< seed of the random numbers of this block; the seeds of any two blocks of any
                              ///< channels differ
+};
+
+/// A pressure or displacement block that consists of one part, such as a lag or a play. `Part` has the
+/// functions reset(), output() and step(segment, next).
+template <class T, class Part>
+class OnePartBlock {
+ public:
+  void reset(const T& input) { part_.reset(input); }
+  [[nodiscard]] T output() const { return part_.output(); }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    part_.step(in, next);
+  }
+
+ protected:
+  explicit OnePartBlock(Part part) : part_(std::move(part)) {}
+
+  Part part_;
 };
 
 /// Requires that the block has a description and a list of parameters.

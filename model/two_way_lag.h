@@ -20,16 +20,12 @@ template <class T>
 class TwoWayLag {
  public:
   TwoWayLag(const T& filling_s, const T& venting_s, double sample_time_s)
-      : filling_{filling_s, WeightCache<T>(1)}, venting_{venting_s, WeightCache<T>(1)} {
-    for (Direction* direction : {&filling_, &venting_}) {
-      if (sample_time_s > 0 && !direction->passes()) (void)direction->weights(T(sample_time_s));
-    }
-  }
+      : filling_(filling_s, sample_time_s), venting_(venting_s, sample_time_s) {}
 
   void reset(const T& input) { output_ = input; }
   [[nodiscard]] const T& output() const { return output_; }
-  [[nodiscard]] const T& filling_s() const { return filling_.time_constant_s; }
-  [[nodiscard]] const T& venting_s() const { return venting_.time_constant_s; }
+  [[nodiscard]] const T& filling_s() const { return filling_.time_constant_s(); }
+  [[nodiscard]] const T& venting_s() const { return venting_.time_constant_s(); }
 
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
@@ -41,8 +37,8 @@ class TwoWayLag {
     if (is_zero(in.duration_s)) return pass_jump(output_, in, filling_.passes(), venting_.passes(), next);
     const T gap = in.begin - output_;
     const double way = value_of(gap) != 0.0 ? value_of(gap) : value_of(in.end) - value_of(in.begin);
-    Direction& now = way >= 0.0 ? filling_ : venting_;
-    Direction& then = way >= 0.0 ? venting_ : filling_;
+    LagWeights<T>& now = way >= 0.0 ? filling_ : venting_;
+    LagWeights<T>& then = way >= 0.0 ? venting_ : filling_;
     const T turn_s = meeting(in, gap, now);
     const T rest_s = in.duration_s - turn_s;
     const double least_s = 1e-6 * value_of(in.duration_s);
@@ -58,47 +54,34 @@ class TwoWayLag {
   }
 
  private:
-  struct Direction {
-    T time_constant_s;
-    WeightCache<T> cache;
-
-    [[nodiscard]] bool passes() const { return value_of(time_constant_s) <= 0.0; }
-    const ExponentialWeights<T>& weights(const T& duration_s) {
-      return cache.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
-        const T rate = 1.0 / time_constant_s;
-        out[0] = ExponentialWeights<T>::make(duration_s, rate, rate);
-      })[0];
-    }
-  };
-
   // Returns the time after which the output equals the input. For a straight input, the gap d = input -
   // output follows d' = slope - d / tau. The gap is zero after tau log(1 - d(0) / (slope tau)) if input and
   // output move towards each other. If input and output do not move towards each other, returns the whole
   // duration.
-  T meeting(const Segment<T>& in, const T& gap, const Direction& now) const {
+  T meeting(const Segment<T>& in, const T& gap, const LagWeights<T>& now) const {
     using std::log1p;
     const T slope = (in.end - in.begin) / in.duration_s;
     if (!(value_of(gap) * value_of(slope) < 0.0)) return in.duration_s;
     if (now.passes()) return T(0.0);
-    const T turn_s = now.time_constant_s * log1p(-gap / (slope * now.time_constant_s));
+    const T turn_s = now.time_constant_s() * log1p(-gap / (slope * now.time_constant_s()));
     return value_of(turn_s) < value_of(in.duration_s) ? turn_s : in.duration_s;
   }
 
   template <class Next>
-  void go(Direction& direction, const Segment<T>& in, Next&& next) {
+  void go(LagWeights<T>& direction, const Segment<T>& in, Next&& next) {
     const T begin = output_;
     if (direction.passes()) {
       output_ = in.end;
       next(Segment<T>{in.duration_s, begin, in.end, in.mean});
       return;
     }
-    const ExponentialWeights<T>& w = direction.weights(in.duration_s);
+    const ExponentialWeights<T>& w = direction.at(in.duration_s);
     const T bend = in.bend();
     output_ = w.end(begin, in, bend);
     next(Segment<T>{in.duration_s, begin, output_, w.mean(begin, in, bend)});
   }
 
-  Direction filling_, venting_;
+  LagWeights<T> filling_, venting_;
   T output_{0.0};
 };
 

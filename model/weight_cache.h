@@ -80,4 +80,28 @@ class WeightCache {
   std::vector<ExponentialWeights<T>> weights_;
 };
 
+/// The time constant of a first-order lag, with its weights for the most recent durations.
+template <class T>
+class LagWeights {
+ public:
+  /// @param sample_time_s  duration whose weights are computed at once; 0 if the sample time is irregular.
+  LagWeights(const T& time_constant_s, double sample_time_s) : time_constant_s_(time_constant_s), cache_(1) {
+    if (sample_time_s > 0 && !passes()) (void)at(T(sample_time_s));
+  }
+
+  [[nodiscard]] const T& time_constant_s() const { return time_constant_s_; }
+  /// Returns true if the output equals the input, because the time constant is 0.
+  [[nodiscard]] bool passes() const { return value_of(time_constant_s_) <= 0.0; }
+  const ExponentialWeights<T>& at(const T& duration_s) {
+    return cache_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
+      const T rate = 1.0 / time_constant_s_;
+      out[0] = ExponentialWeights<T>::make(duration_s, rate, rate);
+    })[0];
+  }
+
+ private:
+  T time_constant_s_;
+  WeightCache<T> cache_;
+};
+
 }  // namespace softgrip::model

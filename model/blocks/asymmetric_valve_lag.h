@@ -9,7 +9,7 @@ namespace softgrip::model {
 
 /// Makes the pressure follow the command with a lag. TwoWayLag (model/two_way_lag.h) describes the equation.
 template <class T>
-class AsymmetricValveLag {
+class AsymmetricValveLag : public OnePartBlock<T, TwoWayLag<T>> {
  public:
   static constexpr BlockInfo info = block_info(
       "asymmetric_valve_lag", Station::valve, Kind::pressure, Inverse::lead, "Asymmetric valve lag",
@@ -22,18 +22,7 @@ class AsymmetricValveLag {
                 Typical{0.1}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
 
   AsymmetricValveLag(std::span<const T> values, const Preparation& preparation)
-      : lag_(values[0], values[1], preparation.sample_time_s) {}
-
-  void reset(const T& input) { lag_.reset(input); }
-  [[nodiscard]] T output() const { return lag_.output(); }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    lag_.step(in, next);
-  }
-
- private:
-  TwoWayLag<T> lag_;
+      : OnePartBlock<T, TwoWayLag<T>>({values[0], values[1], preparation.sample_time_s}) {}
 };
 
 }  // namespace softgrip::model

@@ -10,7 +10,7 @@ namespace softgrip::model {
 /// while the gap between actuator and measured point is closed. In the middle position, the gap on each side
 /// is half of the backlash.
 template <class T>
-class Backlash {
+class Backlash : public OnePartBlock<T, Play<T>> {
  public:
   static constexpr BlockInfo info =
       block_info("backlash", Station::load, Kind::displacement, Inverse::ignored, "Backlash",
@@ -20,18 +20,8 @@ class Backlash {
       parameter("gap_mm", "mm", "motion of the actuator that is lost at a reversal", Typical{0.3},
                 Within{0.0, 100.0}, Scale{0.1}, Neutral{0.0})};
 
-  Backlash(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
-
-  void reset(const T& input) { play_.reset(input); }
-  [[nodiscard]] T output() const { return play_.output(); }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    play_.step(in, next);
-  }
-
- private:
-  Play<T> play_;
+  Backlash(std::span<const T> values, const Preparation&)
+      : OnePartBlock<T, Play<T>>(Play<T>(T(values[0] * 0.5))) {}
 };
 
 }  // namespace softgrip::model

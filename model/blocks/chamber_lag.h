@@ -10,7 +10,7 @@ namespace softgrip::model {
 /// Makes the pressure in the chamber follow the pressure at the sensor with a lag. TwoWayLag
 /// (model/two_way_lag.h) describes the equation.
 template <class T>
-class ChamberLag {
+class ChamberLag : public OnePartBlock<T, TwoWayLag<T>> {
  public:
   static constexpr BlockInfo info =
       block_info("chamber_lag", Station::valve, Kind::pressure, Inverse::lead, "Chamber lag",
@@ -23,18 +23,7 @@ class ChamberLag {
                 Typical{0.2}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
 
   ChamberLag(std::span<const T> values, const Preparation& preparation)
-      : lag_(values[0], values[1], preparation.sample_time_s) {}
-
-  void reset(const T& input) { lag_.reset(input); }
-  [[nodiscard]] T output() const { return lag_.output(); }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    lag_.step(in, next);
-  }
-
- private:
-  TwoWayLag<T> lag_;
+      : OnePartBlock<T, TwoWayLag<T>>({values[0], values[1], preparation.sample_time_s}) {}
 };
 
 }  // namespace softgrip::model

@@ -10,7 +10,7 @@ namespace softgrip::model {
 /// Maps the sum of the elements' outputs to the displacement. CharacteristicMap (model/characteristic_map.h)
 /// describes the equation. The map is monotone for every value of the curvature.
 template <class T>
-class Characteristic {
+class Characteristic : public StaticMapBlock<Characteristic<T>, T> {
  public:
   static constexpr BlockInfo info = block_info(
       "characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
@@ -26,25 +26,13 @@ class Characteristic {
 
   Characteristic(std::span<const T> values, const Preparation&) : map_{values[0], values[1]} {}
 
-  void reset(const T& input) { output_ = map_.value(input); }
-  [[nodiscard]] T output() const { return output_; }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    const Segment<T> out = mapped(
-        in, [this](const T& y) { return map_.value(y); }, output_);
-    output_ = out.end;
-    next(out);
-  }
-
   template <class U>
-  [[nodiscard]] U peek(const T&, const U& end_mm, const Surroundings&) const {
-    return map_.value(end_mm);
+  [[nodiscard]] U map(const U& y) const {
+    return map_.value(y);
   }
 
  private:
   CharacteristicMap<T> map_;
-  T output_{0.0};
 };
 
 }  // namespace softgrip::model

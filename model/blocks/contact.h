@@ -9,7 +9,7 @@ namespace softgrip::model {
 /// Computes the displacement z of a finger with contact from the free displacement y. z = y up to the
 /// position of the contact. Beyond this position, the additional motion is divided by 1 + stiffening.
 template <class T>
-class Contact {
+class Contact : public StaticMapBlock<Contact<T>, T> {
  public:
   static constexpr bool at_samples = true;
   static constexpr BlockInfo info = block_info(
@@ -28,32 +28,16 @@ class Contact {
   Contact(std::span<const T> values, const Preparation&)
       : position_mm_(values[0]), beyond_(1.0 / (1.0 + values[1])) {}
 
-  void reset(const T& input) { output_ = map(input); }
-  [[nodiscard]] T output() const { return output_; }
   [[nodiscard]] const T& position_mm() const { return position_mm_; }
 
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    const Segment<T> out = mapped(
-        in, [this](const T& y) { return map(y); }, output_);
-    output_ = out.end;
-    next(out);
-  }
-
-  template <class U>
-  [[nodiscard]] U peek(const T&, const U& end_mm, const Surroundings&) const {
-    return map(end_mm);
-  }
-
- private:
   template <class U>
   [[nodiscard]] U map(const U& y) const {
     return value_of(y) > value_of(position_mm_) ? U(position_mm_ + (y - position_mm_) * beyond_) : y;
   }
 
+ private:
   T position_mm_;
   T beyond_;
-  T output_{0.0};
 };
 
 }  // namespace softgrip::model

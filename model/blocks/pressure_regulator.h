@@ -10,7 +10,7 @@ namespace softgrip::model {
 
 /// Computes the regulated pressure. RegulatedPressure (model/regulated_pressure.h) describes the equations.
 template <class T>
-class PressureRegulator {
+class PressureRegulator : public OnePartBlock<T, RegulatedPressure<T>> {
  public:
   static constexpr BlockInfo info = block_info(
       "pressure_regulator", Station::valve, Kind::pressure, Inverse::lead, "Pressure regulator",
@@ -37,19 +37,10 @@ class PressureRegulator {
   }
 
   PressureRegulator(std::span<const T> values, const Preparation&)
-      : regulated_({values[0], values[1], values[2], values[3], values[4]}) {}
+      : OnePartBlock<T, RegulatedPressure<T>>(
+            RegulatedPressure<T>({values[0], values[1], values[2], values[3], values[4]})) {}
 
-  void reset(const T& input) { regulated_.reset(input); }
-  [[nodiscard]] T output() const { return regulated_.output(); }
-  [[nodiscard]] const RegulatedPressure<T>& regulated() const { return regulated_; }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    regulated_.step(in, next);
-  }
-
- private:
-  RegulatedPressure<T> regulated_;
+  [[nodiscard]] const RegulatedPressure<T>& regulated() const { return this->part_; }
 };
 
 }  // namespace softgrip::model

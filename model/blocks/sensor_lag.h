@@ -20,22 +20,20 @@ class SensorLag {
                                                    Within{0.0, 1e4}, Scale{0.02}, Neutral{0.0}, Latency{})};
 
   SensorLag(std::span<const T> values, const Preparation& preparation)
-      : time_constant_s_(values[0]), weights_(1) {
-    if (preparation.sample_time_s > 0 && !passes()) (void)weights(T(preparation.sample_time_s));
-  }
+      : lag_(values[0], preparation.sample_time_s) {}
 
   void reset(const T& input) { output_ = input; }
   [[nodiscard]] T output() const { return output_; }
 
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    if (passes()) {
+    if (lag_.passes()) {
       output_ = in.end;
       next(in);
       return;
     }
     if (is_zero(in.duration_s)) return;
-    const ExponentialWeights<T>& w = weights(in.duration_s);
+    const ExponentialWeights<T>& w = lag_.at(in.duration_s);
     const T bend = in.bend();
     const T begin = output_;
     output_ = w.end(begin, in, bend);
@@ -43,18 +41,8 @@ class SensorLag {
   }
 
  private:
-  [[nodiscard]] bool passes() const { return value_of(time_constant_s_) <= 0.0; }
-
-  const ExponentialWeights<T>& weights(const T& duration_s) {
-    return weights_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
-      const T rate = 1.0 / time_constant_s_;
-      out[0] = ExponentialWeights<T>::make(duration_s, rate, rate);
-    })[0];
-  }
-
-  T time_constant_s_;
+  LagWeights<T> lag_;
   T output_{0.0};
-  WeightCache<T> weights_;
 };
 
 }  // namespace softgrip::model

@@ -11,7 +11,7 @@ namespace softgrip::model {
 /// = y (1 - s |y|) for s < 0, where s is the stiffening. The map is odd, monotone for every s, and smooth in
 /// s at s = 0.
 template <class T>
-class Stiffening {
+class Stiffening : public StaticMapBlock<Stiffening<T>, T> {
  public:
   static constexpr bool at_samples = true;
   static constexpr BlockInfo info =
@@ -26,23 +26,6 @@ class Stiffening {
 
   Stiffening(std::span<const T> values, const Preparation&) : stiffening_per_mm_(values[0]) {}
 
-  void reset(const T& input) { output_ = map(input); }
-  [[nodiscard]] T output() const { return output_; }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    const Segment<T> out = mapped(
-        in, [this](const T& y) { return map(y); }, output_);
-    output_ = out.end;
-    next(out);
-  }
-
-  template <class U>
-  [[nodiscard]] U peek(const T&, const U& end_mm, const Surroundings&) const {
-    return map(end_mm);
-  }
-
- private:
   template <class U>
   [[nodiscard]] U map(const U& y) const {
     const U magnitude = value_of(y) < 0.0 ? U(-y) : y;
@@ -50,8 +33,8 @@ class Stiffening {
     return value_of(stiffening_per_mm_) >= 0.0 ? U(y / (1.0 + bent)) : U(y * (1.0 - bent));
   }
 
+ private:
   T stiffening_per_mm_;
-  T output_{0.0};
 };
 
 }  // namespace softgrip::model

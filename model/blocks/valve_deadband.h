@@ -10,7 +10,7 @@ namespace softgrip::model {
 /// Computes the pressure from the command. After a reversal of the command, the pressure is constant until
 /// the command has moved back by the width of the band. After that, the pressure follows the command.
 template <class T>
-class ValveDeadband {
+class ValveDeadband : public OnePartBlock<T, Play<T>> {
  public:
   static constexpr BlockInfo info = block_info(
       "valve_deadband", Station::valve, Kind::pressure, Inverse::play, "Valve dead band",
@@ -20,18 +20,8 @@ class ValveDeadband {
       "band_kpa", "kPa", "largest change of the commanded pressure that the valve ignores after a reversal",
       Typical{1.0}, Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
 
-  ValveDeadband(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
-
-  void reset(const T& input) { play_.reset(input); }
-  [[nodiscard]] T output() const { return play_.output(); }
-
-  template <class Next>
-  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    play_.step(in, next);
-  }
-
- private:
-  Play<T> play_;
+  ValveDeadband(std::span<const T> values, const Preparation&)
+      : OnePartBlock<T, Play<T>>(Play<T>(T(values[0] * 0.5))) {}
 };
 
 }  // namespace softgrip::model

@@ -24,23 +24,21 @@ class ValveLag {
                                                    Latency{})};
 
   ValveLag(std::span<const T> values, const Preparation& preparation)
-      : time_constant_s_(values[0]), weights_(1) {
-    if (preparation.sample_time_s > 0 && !passes()) (void)weights(T(preparation.sample_time_s));
-  }
+      : lag_(values[0], preparation.sample_time_s) {}
 
   void reset(const T& input) { output_ = input; }
   [[nodiscard]] T output() const { return output_; }
-  [[nodiscard]] const T& time_constant_s() const { return time_constant_s_; }
+  [[nodiscard]] const T& time_constant_s() const { return lag_.time_constant_s(); }
 
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
-    if (passes()) {
+    if (lag_.passes()) {
       output_ = in.end;
       next(in);
       return;
     }
     if (is_zero(in.duration_s)) return;  // a jump of the command does not change the pressure immediately
-    const ExponentialWeights<T>& w = weights(in.duration_s);
+    const ExponentialWeights<T>& w = lag_.at(in.duration_s);
     const T bend = in.bend();
     const T begin = output_;
     const T end = w.end(begin, in, bend);
@@ -52,15 +50,6 @@ class ValveLag {
   }
 
  private:
-  [[nodiscard]] bool passes() const { return value_of(time_constant_s_) <= 0.0; }
-
-  const ExponentialWeights<T>& weights(const T& duration_s) {
-    return weights_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
-      const T rate = 1.0 / time_constant_s_;
-      out[0] = ExponentialWeights<T>::make(duration_s, rate, rate);
-    })[0];
-  }
-
   // For a straight input of slope r, the gap d = input - output follows d' = r - d / tau. The gap is zero
   // after t = tau log(1 - d(0) / (r tau)). A reversal is ignored if its distance from an end of the segment
   // is below a millionth of the segment's duration. The effect of such a reversal on a Bouc-Wen block is of
@@ -68,21 +57,21 @@ class ValveLag {
   template <class Next>
   bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
     using std::log1p;
+    const T& time_constant_s = lag_.time_constant_s();
     const T slope = (in.end - in.begin) / in.duration_s;
-    const T turn_s = time_constant_s_ * log1p(-gap_begin / (slope * time_constant_s_));
+    const T turn_s = time_constant_s * log1p(-gap_begin / (slope * time_constant_s));
     const T rest_s = in.duration_s - turn_s;
     const double least_s = 1e-6 * value_of(in.duration_s);
     if (!(value_of(turn_s) > least_s && value_of(rest_s) > least_s)) return false;
     const T peak = in.begin + slope * turn_s;
-    next(Segment<T>{turn_s, begin, peak,
-                    (in.begin + peak) * 0.5 - time_constant_s_ * (peak - begin) / turn_s});
-    next(Segment<T>{rest_s, peak, end, (peak + in.end) * 0.5 - time_constant_s_ * (end - peak) / rest_s});
+    next(
+        Segment<T>{turn_s, begin, peak, (in.begin + peak) * 0.5 - time_constant_s * (peak - begin) / turn_s});
+    next(Segment<T>{rest_s, peak, end, (peak + in.end) * 0.5 - time_constant_s * (end - peak) / rest_s});
     return true;
   }
 
-  T time_constant_s_;
+  LagWeights<T> lag_;
   T output_{0.0};
-  WeightCache<T> weights_;
 };
 
 }  // namespace softgrip::model
