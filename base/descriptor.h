@@ -2,12 +2,15 @@
 // Defines an object that owns a file descriptor and closes it on destruction.
 // Waits until a descriptor is ready or a deadline has passed.
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
+#include <ctime>
 #include <utility>
 
-#include "base/time.h"
+#include "base/clock.h"
 
 namespace softgrip {
 
@@ -46,6 +49,17 @@ enum class Waited : std::uint8_t {
 
 /// Waits for events of poll() until `deadline` on CLOCK_BOOTTIME. select() is not used, because it does not
 /// accept descriptors above 1023.
-[[nodiscard]] Waited wait_for(int descriptor, short events, Nanoseconds deadline) noexcept;
+[[nodiscard]] inline Waited wait_for(int descriptor, short events, Nanoseconds deadline) noexcept {
+  const MonotonicClock clock;
+  while (true) {
+    const Nanoseconds remaining = deadline - clock.now();
+    if (remaining <= 0) return Waited::timed_out;
+    const timespec timeout{.tv_sec = remaining / 1'000'000'000, .tv_nsec = remaining % 1'000'000'000};
+    pollfd waiting{.fd = descriptor, .events = events, .revents = 0};
+    const int ready = ::ppoll(&waiting, 1, &timeout, nullptr);
+    if (ready > 0) return Waited::ready;
+    if (ready < 0 && errno != EINTR) return Waited::failed;
+  }
+}
 
 }  // namespace softgrip

@@ -3,6 +3,8 @@
 // Describes errno values without allocating memory.
 // Quotes words of a shell command line.
 
+#include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <cstring>
 #include <functional>
@@ -41,6 +43,15 @@ template <typename Items, typename TextOf = std::identity>
 
 /// Returns `text` in a form that a POSIX shell reads as one word. If no character of `text` is special in a
 /// shell, the result is the unchanged text. Otherwise, the result is the text in single quotes.
-[[nodiscard]] std::string shell_word(std::string_view text);
+[[nodiscard]] inline std::string shell_word(std::string_view text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./=:+,").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return std::string(text);
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 }  // namespace softgrip

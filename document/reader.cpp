@@ -5,9 +5,9 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "document/characters.h"
 #include "document/key_hint.h"
 #include "document/number.h"
+#include "document/problem.h"
 
 namespace softgrip::document {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "document/characters.h"
+#include "document/problem.h"
 
 namespace softgrip::document {
 namespace {

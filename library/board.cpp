@@ -6,7 +6,6 @@
 
 #include "base/clock.h"
 #include "drivers/board/board.h"
-#include "library/control_parts.h"
 #include "library/model_parts.h"
 #include "simulation/plant/simulated_board.h"
 

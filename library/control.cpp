@@ -13,7 +13,6 @@
 #include "control/feedforward/running_model.h"
 #include "control/tick/channel_controller.h"
 #include "control/tick/settings.h"
-#include "library/control_parts.h"
 #include "library/model_parts.h"
 
 namespace softgrip {

@@ -9,7 +9,6 @@
 #include "base/numbers.h"
 #include "document/node.h"
 #include "document/problem.h"
-#include "library/control_parts.h"
 #include "library/include/softgrip/control.h"
 #include "library/model_parts.h"
 #include "model/chain.h"

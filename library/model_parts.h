@@ -1,14 +1,19 @@
 #pragma once
 // Defines the internal data of a public Model, and the checks of arguments that all public functions share.
+// Converts limits and readings between the public interface and the types of control/ and drivers/.
 
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "control/elements/limits.h"
 #include "document/problem.h"
+#include "library/include/softgrip/board.h"
+#include "library/include/softgrip/control.h"
 #include "library/include/softgrip/model.h"
 #include "model/model.h"
+#include "model/reading.h"
 
 namespace softgrip {
 
@@ -41,6 +46,14 @@ void require_between(const std::string& argument, double value, double lower, do
                      const std::string& unit);
 /// Requires a finite number above 0.
 void require_positive(const std::string& argument, double value, const std::string& unit);
+
+[[nodiscard]] control::LimitSettings settings_of(const Limits& limits) noexcept;
+/// Checks limits and converts them. Throws InvalidArgument if a limit is invalid.
+control::LimitSettings checked(const Limits& limits);
+
+[[nodiscard]] Validity validity_of(model::Validity validity) noexcept;
+[[nodiscard]] model::Reading reading_of(const Reading& reading) noexcept;
+[[nodiscard]] Reading reading_of(const model::Reading& reading) noexcept;
 
 }  // namespace library
 }  // namespace softgrip

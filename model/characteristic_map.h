@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "model/dual.h"
 #include "model/exponential.h"
-#include "model/number.h"
 
 namespace softgrip::model {
 

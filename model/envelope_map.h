@@ -1,7 +1,7 @@
 #pragma once
 // Maps the pressure to the envelope of generalised play operators.
 
-#include "model/number.h"
+#include "model/dual.h"
 
 namespace softgrip::model {
 

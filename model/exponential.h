@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/number.h"
+#include "model/dual.h"
 #include "model/segment.h"
 
 namespace softgrip::model {

@@ -1,7 +1,7 @@
 #pragma once
 // Computes the pressure drop between a regulator and a finger that has a leak.
 
-#include "model/number.h"
+#include "model/dual.h"
 #include "model/port_flow.h"
 
 namespace softgrip::model {

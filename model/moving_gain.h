@@ -1,7 +1,7 @@
 #pragma once
 // Multiplies a signal by a gain that depends on the surroundings, for example on the temperature.
 
-#include "model/number.h"
+#include "model/dual.h"
 #include "model/segment.h"
 
 namespace softgrip::model {

@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "model/number.h"
+#include "model/dual.h"
 #include "model/segment.h"
 
 namespace softgrip::model {

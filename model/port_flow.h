@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "model/number.h"
+#include "model/dual.h"
 
 namespace softgrip::model {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/dual.h"
 #include "model/exponential.h"
-#include "model/number.h"
 #include "model/port_flow.h"
 #include "model/segment.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/number.h"
+#include "model/dual.h"
 #include "model/segment.h"
 #include "model/weight_cache.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/number.h"
+#include "model/dual.h"
 
 namespace softgrip::model {
 

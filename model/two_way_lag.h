@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "model/dual.h"
 #include "model/exponential.h"
-#include "model/number.h"
 #include "model/segment.h"
 #include "model/weight_cache.h"
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "model/dual.h"
 #include "model/exponential.h"
-#include "model/number.h"
 
 namespace softgrip::model {
 

@@ -1,4 +1,4 @@
-#include "rig/channel_defaults.h"
+#include "rig/rig_file_reader.h"
 
 #include <algorithm>
 

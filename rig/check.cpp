@@ -13,7 +13,6 @@
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "rig/plc_file/settings.h"
-#include "rig/rig_comparison.h"
 #include "rig/rig_file.h"
 #include "rig/web_file/settings.h"
 

@@ -1,4 +1,4 @@
-#include "rig/rig_comparison.h"
+#include "rig/check.h"
 
 #include <algorithm>
 #include <cmath>

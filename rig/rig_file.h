@@ -2,6 +2,7 @@
 // Reads rig files: all settings of softgripd for one rig, as plain values. docs/reference/rig-file.md
 // describes the file, and config/rig.yaml and config/rig_tcp.yaml are examples.
 // Reads a rig from stored texts of its files, without access to the files.
+// Finds the socket of the daemon that runs a rig. The clients of the daemon use this function.
 
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "base/enum_table.h"
 #include "control/tick/settings.h"
 #include "document/node.h"
+#include "document/problem.h"
 #include "drivers/board/channel_wiring.h"
 #include "drivers/iio/iio_board.h"
 #include "drivers/modbus/modbus_board.h"
@@ -109,5 +111,11 @@ bool reseed(RigFile& rig, std::uint64_t seed);
 /// same problems as load_rig() reports for the files.
 [[nodiscard]] std::optional<RigFile> read_stored_rig(const std::vector<InputFile>& inputs,
                                                      document::Problems& problems);
+
+/// Returns the value of `socket: path:` in a rig file, as a path relative to the working directory. The other
+/// keys of the file are not checked, because the daemon may run with an earlier version of the file. If the
+/// file cannot be read or has no such path, a problem is reported.
+[[nodiscard]] std::optional<std::string> socket_path_of(const std::string& rig_path,
+                                                        document::Problems& problems);
 
 }  // namespace softgrip::rig

@@ -6,7 +6,7 @@
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
 #include "control/feedforward/pressure_plan.h"
-#include "rig/channel_defaults.h"
+#include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {
 

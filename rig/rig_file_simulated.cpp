@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "rig/rig_file_reader.h"
-#include "simulation/plant/fault_reader.h"
+#include "simulation/plant/plant.h"
 
 namespace softgrip::rig {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "control/tick/parameter.h"
+#include "control/tick/sequence.h"
 #include "document/node.h"
 
 namespace softgrip::control {

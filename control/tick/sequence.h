@@ -2,6 +2,7 @@
 // Defines grip sequences in two forms: as written in the file (Sequence), and fitted to one rig
 // (PreparedSequence). The members have the names of the keys in the file; docs/reference/sequence-file.md
 // describes the keys.
+// Defines the parameters of a sequence. A parameter is a number whose value a start request may choose.
 
 #include <cmath>
 #include <cstddef>
@@ -14,7 +15,6 @@
 
 #include "base/enum_table.h"
 #include "control/feedforward/pressure_plan.h"
-#include "control/tick/parameter.h"
 #include "control/tick/settings.h"
 #include "document/problem.h"
 #include "model/signals.h"
@@ -28,6 +28,26 @@ inline constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
   return 1U << channel;
 }
+
+/// A number that a sequence file declares under `parameters` and uses as `$name`.
+struct Parameter {
+  std::string name;
+  std::string unit;  ///< unit, spelled as at the end of keys: "kpa", "mm_per_s"; empty for a number without a
+                     ///< unit
+  double lower = 0;  ///< smallest allowed value; `upper` is the largest allowed value
+  double upper = 0;
+  double default_value = 0;
+  std::string about;      ///< description of the parameter in one sentence
+  document::Location at;  ///< position of the parameter's name in the file
+  double value = 0;       ///< value with which the sequence is read; at first the default
+};
+
+/// A value that a start request assigns to a parameter, in the unit of the parameter.
+struct Argument {
+  std::string name;
+  double value = 0;
+  bool operator==(const Argument&) const = default;
+};
 
 /// The kind of a step. The name of a kind is the key of the step in the file.
 enum class StepKind : std::uint8_t {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "control/tick/parameter.h"
+#include "control/tick/sequence.h"
 #include "daemon/loop/shared_state.h"
 
 namespace softgrip::daemon {

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "control/tick/parameter.h"
+#include "control/tick/sequence.h"
 #include "daemon/recording/event_log.h"
 #include "daemon/recording/sequence_store.h"
 

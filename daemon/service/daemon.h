@@ -1,6 +1,7 @@
 #pragma once
 // The daemon without its command line: creates board, loop, bus, recorder and socket from a rig file.
 // `softgripd` and `softgrip run` use this class.
+// Builds the report that softgripd or `softgrip run` prints before any motion.
 
 #include <cstdint>
 #include <functional>
@@ -8,12 +9,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
 
 #include "base/clock.h"
 #include "base/exit_code.h"
+#include "daemon/loop/real_time.h"
 #include "daemon/loop/shared_state.h"
 #include "daemon/loop/statistics.h"
 #include "daemon/recording/event_log.h"
@@ -131,5 +134,11 @@ class Daemon {
 /// Type of run_daemon(). Tests pass another function of this type in place of run_daemon().
 using DaemonRunner =
     std::function<tl::expected<Outcome, std::string>(rig::RigFile rig, DaemonOptions options)>;
+
+/// Returns several lines: rate, board, bus budget, latency, watchdog, safe actions and the feedforward of
+/// each channel. If `real_time` is not nullptr, the lines contain the real-time settings. `real_time` is
+/// nullptr in virtual time and for `--check`. `program` is the name of the program that drives the rig.
+[[nodiscard]] std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
+                                         const RealTimeReport* real_time, std::string_view program);
 
 }  // namespace softgrip::daemon

@@ -17,11 +17,11 @@
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/thread.h"
 #include "daemon/service/board_lock.h"
+#include "daemon/service/daemon.h"
 #include "daemon/service/daemon_parts.h"
 #include "daemon/service/panel_run.h"
 #include "daemon/service/runtime_folder.h"
 #include "daemon/service/service_manager.h"
-#include "daemon/service/startup_report.h"
 #include "daemon/socket/socket_api.h"
 #include "daemon/socket/socket_server.h"
 

@@ -19,7 +19,6 @@
 #include "daemon/service/named_device.h"
 #include "daemon/service/runtime_folder.h"
 #include "daemon/service/safe_outputs.h"
-#include "daemon/service/startup_report.h"
 #include "rig/check.h"
 
 namespace {

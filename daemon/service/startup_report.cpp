@@ -1,4 +1,4 @@
-#include "daemon/service/startup_report.h"
+#include "daemon/service/daemon.h"
 
 #include <algorithm>
 #include <string_view>

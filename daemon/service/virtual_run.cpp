@@ -1,8 +1,8 @@
 // Runs the daemon in virtual time, in one thread and without sleeping. Each run with the same seed has the
 // same result.
 
+#include "daemon/service/daemon.h"
 #include "daemon/service/daemon_parts.h"
-#include "daemon/service/startup_report.h"
 
 namespace softgrip::daemon {
 

@@ -14,7 +14,7 @@
 #include <tl/expected.hpp>
 
 #include "base/enum_table.h"
-#include "control/tick/parameter.h"
+#include "control/tick/sequence.h"
 
 namespace softgrip::daemon {
 

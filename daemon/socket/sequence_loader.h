@@ -11,7 +11,7 @@
 
 #include <tl/expected.hpp>
 
-#include "control/tick/parameter.h"
+#include "control/tick/sequence.h"
 #include "control/tick/settings.h"
 #include "daemon/recording/sequence_store.h"
 #include "document/problem.h"

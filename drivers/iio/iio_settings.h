@@ -2,7 +2,9 @@
 // Defines the settings of a board that consists of converters of this computer (iio_board.h), and the units
 // of its channels.
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,9 +45,33 @@ struct IioSettings {
 
 /// Returns the unit that follows from the name of a channel; nothing if the channel is not a voltage, current
 /// or pressure.
-[[nodiscard]] std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept;
+[[nodiscard]] inline std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept {
+  const auto begins = [&](std::string_view word) {
+    return channel.size() > word.size() && channel.substr(0, word.size()) == word &&
+           channel[word.size()] >= '0' && channel[word.size()] <= '9';
+  };
+  const bool plain = std::all_of(channel.begin(), channel.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  });
+  if (plain && begins("voltage")) return ElectricalUnit::volt;
+  if (plain && begins("current")) return ElectricalUnit::milliampere;
+  if (plain && (begins("pressure") || channel == "pressure")) return ElectricalUnit::kilopascal;
+  return std::nullopt;
+}
 /// Returns the terminals of an industrial I/O board with their units. The ranges in the result are unlimited,
 /// because the actual ranges are unknown until the converters are open.
-[[nodiscard]] ModuleTerminals terminals_of(const IioSettings& settings);
+[[nodiscard]] inline ModuleTerminals terminals_of(const IioSettings& settings) {
+  const auto terminals = [](const std::vector<IioTerminal>& from) {
+    constexpr double anything = std::numeric_limits<double>::infinity();
+    std::vector<Terminal> result;
+    result.reserve(from.size());
+    for (const IioTerminal& terminal : from) {
+      result.push_back(
+          {unit_of_channel(terminal.channel).value_or(ElectricalUnit::volt), -anything, anything});
+    }
+    return result;
+  };
+  return {"iio", terminals(settings.inputs), terminals(settings.outputs)};
+}
 
 }  // namespace softgrip::drivers

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/block.h"
-#include "model/number.h"
+#include "model/dual.h"
 
 namespace softgrip::model {
 

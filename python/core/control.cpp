@@ -1,4 +1,3 @@
-#include "python/core/bindings.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>

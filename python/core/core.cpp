@@ -7,7 +7,6 @@
 
 #include <softgrip/softgrip.h>
 
-#include "python/core/bindings.h"
 #include "python/core/interruptible.h"
 #include "python/core/values.h"
 

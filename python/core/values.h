@@ -1,6 +1,7 @@
 #pragma once
 // Converts arguments and results of Python: NumPy arrays to and from vectors of C++, and words to
 // enumerations.
+// Adds the parts of the Python module softgrip._core to the module.
 
 #include <pybind11/numpy.h>
 
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <pybind11/pybind11.h>
 #include <softgrip/error.h>
 
 namespace softgrip::python {
@@ -49,5 +51,12 @@ Value chosen(const char* argument, const std::string& word,
   }
   throw InvalidArgument(argument, "'" + word + "' is not one of " + all);
 }
+
+/// Adds limits, PID, controller and simulated board. Each function of these classes takes only microseconds,
+/// so it keeps the global interpreter lock (GIL).
+void add_control(pybind11::module_& module);
+
+/// Adds the function `health`, which computes the health of fingers.
+void add_health(pybind11::module_& module);
 
 }  // namespace softgrip::python

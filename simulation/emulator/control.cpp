@@ -1,4 +1,4 @@
-#include "simulation/emulator/control.h"
+#include "simulation/emulator/server.h"
 
 #include <charconv>
 #include <nlohmann/json.hpp>

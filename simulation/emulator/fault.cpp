@@ -6,7 +6,7 @@
 
 #include "base/enum_table.h"
 #include "drivers/modbus/modbus_message.h"
-#include "simulation/plant/fault_reader.h"
+#include "simulation/plant/plant.h"
 
 namespace softgrip::simulation {
 namespace {

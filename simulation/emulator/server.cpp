@@ -9,8 +9,6 @@
 #include <iterator>
 #include <vector>
 
-#include "simulation/emulator/control.h"
-
 namespace softgrip::simulation {
 namespace {
 

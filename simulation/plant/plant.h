@@ -1,12 +1,17 @@
 #pragma once
 // Simulates one finger: valve, actuator, load and sensor of a model, an object that the finger can touch, and
 // faults. Both the simulated board and the emulator use this simulation.
+// Declares the keys of the faults of a finger. The events of a rig file and the faults file of the emulator
+// have the same keys with the same limits.
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "base/enum_table.h"
+#include "document/schema.h"
 #include "model/model.h"
 
 namespace softgrip::simulation {
@@ -111,5 +116,27 @@ class Plant {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+inline constexpr document::Range reach_mm{-1000, 1000};
+
+/// Returns the key of a leak, which the line fault `leaking` requires.
+[[nodiscard]] inline document::Key<LineFault> leak_key() {
+  return document::required("share", &LineFault::share, {0, 1},
+                            "share of the commanded pressure that is lost");
+}
+/// Returns the key with the name `name` for the size of an offset [mm], which the sensor fault `offset`
+/// requires.
+[[nodiscard]] inline document::Key<SensorFault> offset_key(std::string name) {
+  return document::required(std::move(name), &SensorFault::value_mm, reach_mm, "offset of the reading");
+}
+/// Reads an object with the keys `position_mm` and `yielding`.
+[[nodiscard]] inline PlantObject read_object(const document::Document& document, const document::Node& node,
+                                             document::Problems& problems) {
+  document::MapReader reader(document, node, problems, "object");
+  PlantObject object;
+  object.position_mm = reader.number("position_mm", reach_mm);
+  object.yielding = reader.number("yielding", {0, 1});
+  return object;
+}
 
 }  // namespace softgrip::simulation

@@ -1,6 +1,6 @@
 // Tests the key `channel_defaults` of a rig file. This key contains the settings that all channels share.
 
-#include "rig/channel_defaults.h"
+#include "rig/rig_file_reader.h"
 
 #include <gtest/gtest.h>
 

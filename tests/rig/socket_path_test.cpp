@@ -1,4 +1,4 @@
-#include "rig/socket_path.h"
+#include "rig/rig_file.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/random.h"
-#include "tools/client/own_start.h"
+#include "tools/client/daemon_client.h"
 
 namespace softgrip::world {
 namespace {

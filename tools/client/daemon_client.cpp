@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/net/listener.h"
-#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 namespace {

@@ -2,11 +2,17 @@
 // Connects programs to softgripd's socket. In each direction, every message is one line with a JSON object
 // (docs/reference/socket-api.md).
 // A gateway opens its connection again after a loss.
+// Requests a start with a `start_id` of its own. With this id, a program can stop its own start and does not
+// affect the start of another program (docs/reference/socket-api.md, "A stop of one start").
+// Checks all lines of the daemon. After the check, all fields that the programs read have the JSON types of
+// docs/reference/socket-api.md, so the readers of the fields need no checks of their own.
+// Reads fields of the daemon's messages that may be missing, null or of an unexpected JSON type.
 
 #include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json_fwd.hpp>
@@ -112,5 +118,36 @@ class DaemonLink {
   std::optional<DaemonClient> client_;
   Nanoseconds last_attempt_at_ = 0;  // time of the last attempt to connect by connect()
 };
+
+/// Returns a new id for a start that no other start has.
+[[nodiscard]] std::string new_start_id();
+
+/// Checks that the daemon supports `start_id`, so that a program can stop its own start alone. Returns
+/// nullopt if the daemon supports it, otherwise the reason why the program must not request a start.
+[[nodiscard]] std::optional<ClientFailure> check_start_id_support(DaemonClient& client);
+
+/// Returns the request to stop the start with this id and no other start.
+[[nodiscard]] nlohmann::ordered_json stop_request_for(const std::string& start_id);
+
+/// Returns true if the daemon's reply to the request of stop_request_for() confirms that the start does not
+/// run and will not begin.
+[[nodiscard]] bool confirms_stop(const nlohmann::ordered_json& reply);
+
+/// Returns true if this reply of the daemon refuses the start. Returns false if the reply states that the
+/// control loop did not respond in time, because the loop may still begin this start.
+[[nodiscard]] bool refuses_start(const nlohmann::ordered_json& reply);
+
+/// Parses a line of the daemon: a reply, a state or an event. The error describes the malformed part. An
+/// unknown key may have a value of any type, because a newer daemon may send additional keys.
+[[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> parse_reply(std::string_view line);
+
+/// Returns the text at `key` without control characters, shortened to `most` characters. Returns "-" if there
+/// is no text.
+[[nodiscard]] std::string text_at(const nlohmann::ordered_json& json, const char* key,
+                                  std::size_t most = 200);
+[[nodiscard]] std::optional<double> number_at(const nlohmann::ordered_json& json, const char* key);
+/// Returns the object at `key`. Returns an empty object if there is no value, or if the value is not an
+/// object.
+[[nodiscard]] const nlohmann::ordered_json& object_at(const nlohmann::ordered_json& json, const char* key);
 
 }  // namespace softgrip::tools

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "document/problem.h"
-#include "rig/socket_path.h"
+#include "rig/rig_file.h"
 #include "tools/command_line/input_files.h"
 
 namespace softgrip::tools {

@@ -1,6 +1,7 @@
 #pragma once
 // Formats the daemon's messages as text: status, list of sequences, and events.
 // Draws the recent values of a quantity as one line of characters.
+// Reads the last result of `softgrip health` from the folder of the recordings.
 
 #include <cstddef>
 #include <deque>
@@ -85,5 +86,25 @@ struct StatusParts {
 /// Formats an event for a narrow screen: "09:32:05 !  left: Grip result: NO PART.". `!` marks a warning and
 /// `!!` an error.
 [[nodiscard]] std::string brief_line_of_event(const nlohmann::ordered_json& event);
+
+/// Name of the subfolder for the results of softgrip-health.service, in the folder of the recordings.
+inline constexpr const char* health_folder = "health";
+/// Age above which a result of `softgrip health` is out of date [s].
+inline constexpr double health_old_s = 3 * 86400.0;
+
+/// Returns the content of health.json from the subfolder `health`, with the added member `age_s`. Returns
+/// null if the file cannot be read.
+/// @param recordings  folder of the recordings; empty if there is none
+[[nodiscard]] nlohmann::ordered_json last_health(const std::string& recordings);
+
+/// One line of text about the health of the fingers. The complete list contains one line per changed finger,
+/// or one line for all fingers together. If the result is out of date, one more line states this. The list is
+/// empty if `health` is null.
+struct HealthLine {
+  std::string text;
+  bool good = true;
+  std::string advice;  ///< remedy for the alarm; empty if no remedy is needed
+};
+[[nodiscard]] std::vector<HealthLine> health_lines(const nlohmann::ordered_json& health);
 
 }  // namespace softgrip::tools

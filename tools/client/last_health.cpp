@@ -1,4 +1,4 @@
-#include "tools/client/last_health.h"
+#include "tools/client/daemon_text.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "base/numbers.h"
-#include "tools/client/reply_check.h"
+#include "tools/client/daemon_client.h"
 
 namespace softgrip::tools {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/client/daemon_client.h"
 #include "tools/client/daemon_text.h"
-#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/client/own_start.h"
+#include "tools/client/daemon_client.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "control/elements/fault.h"
-#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 

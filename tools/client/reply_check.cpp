@@ -1,4 +1,4 @@
-#include "tools/client/reply_check.h"
+#include "tools/client/daemon_client.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
-#include "control/tick/parameter.h"
+#include "control/tick/sequence.h"
 #include "tools/command_line/command.h"
 
 namespace softgrip::tools {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/numbers.h"
-#include "tools/client/reply_check.h"
+#include "tools/client/daemon_client.h"
 
 namespace softgrip::tools {
 namespace {

@@ -5,7 +5,10 @@
 //
 // and one line in commands.h. The function adds its subcommand to `program`. If the user chose this
 // subcommand, the callback of the subcommand runs it and stores the exit code in `outcome`.
+//
+// The options and subcommands of the program also determine the completion scripts for shells.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,5 +38,13 @@ ExitCode refuse(const document::Problems& problems);
 /// Returns the command's name and arguments for its JSON result, without the arguments that select the output
 /// (--out, --json, --figures). `softgrip report --verify` repeats this call.
 [[nodiscard]] std::vector<std::string> call_of(const CLI::App& command);
+
+enum class Shell { bash, zsh, fish };
+/// Parses "bash", "zsh" or "fish". Returns nullopt for any other name.
+[[nodiscard]] std::optional<Shell> shell_named(std::string_view name);
+
+/// Returns a script that completes the program's commands, options, allowed values and files. The script
+/// requests the names of sequences from the daemon.
+[[nodiscard]] std::string completion_script(const CLI::App& program, Shell shell);
 
 }  // namespace softgrip::tools

@@ -1,4 +1,4 @@
-#include "tools/command_line/completion.h"
+#include "tools/command_line/command.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

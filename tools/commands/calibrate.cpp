@@ -21,7 +21,6 @@
 #include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/calibration_results.h"
 #include "tools/commissioning/procedure.h"
-#include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
 namespace {

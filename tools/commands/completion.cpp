@@ -1,6 +1,6 @@
 // softgrip completion: prints a script for a shell that completes softgrip's commands and options.
 
-#include "tools/command_line/completion.h"
+#include "tools/command_line/command.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

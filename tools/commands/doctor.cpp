@@ -13,7 +13,7 @@
 #include "daemon/service/signals.h"
 #include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
-#include "tools/client/last_health.h"
+#include "tools/client/daemon_text.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"

@@ -7,7 +7,6 @@
 #include "base/numbers.h"
 #include "tools/client/daemon_client.h"
 #include "tools/commissioning/procedure.h"
-#include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
 namespace {

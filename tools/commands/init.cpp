@@ -17,8 +17,8 @@
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
+#include "tools/commissioning/procedure.h"
 #include "tools/commissioning/rig_draft.h"
-#include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
 namespace {

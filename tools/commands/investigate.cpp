@@ -22,10 +22,10 @@
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
+#include "tools/investigation/closed_loop_gain.h"
 #include "tools/investigation/diagnosis_folder.h"
 #include "tools/investigation/experiment_rig.h"
 #include "tools/investigation/investigation.h"
-#include "tools/investigation/rig_tracking.h"
 #include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {

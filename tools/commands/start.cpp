@@ -16,9 +16,9 @@
 
 #include "base/exit_code.h"
 #include "base/files.h"
+#include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"
-#include "tools/client/own_start.h"
 #include "tools/client/set_option.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"

@@ -9,7 +9,6 @@
 #include "rig/rig_file.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"
-#include "tools/client/last_health.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"

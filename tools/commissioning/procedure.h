@@ -1,6 +1,8 @@
 #pragma once
 // The steps of a calibration, in which a person reads the gauges.
+// Asks a person at the terminal, or a script that writes to the standard input.
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include <tl/expected.hpp>
 
 #include "base/exit_code.h"
+#include "base/net/line_buffer.h"
 #include "control/elements/limits.h"
 #include "tools/commissioning/line_fit.h"
 #include "tools/commissioning/motion_session.h"
@@ -115,5 +118,27 @@ struct DeadZoneResult {
 /// of 20 %, the resolution and linearity of the pressure are poor.
 [[nodiscard]] double share_of_valve(const rig::RigFile& rig, std::size_t channel);
 inline constexpr double least_share_of_valve = 0.2;
+
+/// Writes questions to the standard error. Answers come first from the prepared answers. After the last
+/// prepared answer, they are read line by line from the standard input.
+class TerminalOperator final : public Operator {
+ public:
+  TerminalOperator();
+
+  void prepare(const std::vector<std::string>& answers) { prepared_.assign(answers.begin(), answers.end()); }
+  void tell(const std::string& text) override;
+  void ask(const std::string& question) override;
+  std::optional<std::string> answer() override;
+  [[nodiscard]] bool gone() const override { return closed_ && !pending_.has_line(); }
+  [[nodiscard]] bool patient() const override { return interactive_; }
+
+ private:
+  std::optional<std::string> take_line();
+
+  bool interactive_;
+  bool closed_ = false;
+  net::LineBuffer pending_;
+  std::deque<std::string> prepared_;
+};
 
 }  // namespace softgrip::tools::calibrate

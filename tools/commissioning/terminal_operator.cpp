@@ -1,4 +1,4 @@
-#include "tools/commissioning/terminal_operator.h"
+#include "tools/commissioning/procedure.h"
 
 #include <poll.h>
 #include <unistd.h>

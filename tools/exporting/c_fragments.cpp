@@ -1,4 +1,4 @@
-#include "tools/exporting/c_fragments.h"
+#include "tools/exporting/c_source.h"
 
 namespace softgrip::tools::c_text {
 

@@ -1,6 +1,6 @@
-// Fragments of the valve blocks, which tools/exporting/c_fragments.h declares.
+// Fragments of the valve blocks, which tools/exporting/c_source.h declares.
 
-#include "tools/exporting/c_fragments.h"
+#include "tools/exporting/c_source.h"
 
 namespace softgrip::tools::c_text {
 

@@ -25,7 +25,6 @@
 #include "model/catalogue.h"
 #include "model/file/model_file.h"
 #include "model/named.h"
-#include "tools/exporting/c_fragments.h"
 
 namespace softgrip::tools {
 namespace {

@@ -2,6 +2,7 @@
 // Plays the experiments of an investigation on a rig. The rig is either described by a rig file and
 // controlled by the daemon's code, or it is a command that the user provides. Checks that the rig played the
 // requested experiment.
+// Measures the closed loop on a rig. The rig tracks the same sine twice, once with each of two controllers.
 
 #include <cstdint>
 #include <functional>
@@ -10,12 +11,15 @@
 
 #include <tl/expected.hpp>
 
+#include "base/result/result.h"
 #include "daemon/service/daemon.h"
 #include "document/problem.h"
+#include "model/model.h"
 #include "rig/rig_file.h"
 #include "sysid/diagnosis/experiments/waveform.h"
 #include "sysid/identification/validate.h"
 #include "sysid/logs/log.h"
+#include "tools/investigation/closed_loop_gain.h"
 #include "tools/investigation/investigation.h"
 
 namespace softgrip::tools {
@@ -97,5 +101,22 @@ using Consent = std::function<bool(const std::string& what)>;
 /// @param known_kpa  largest pressure of the logs to which the model was fitted
 [[nodiscard]] std::optional<std::string> touched(const sysid::Validation& predicted, const sysid::Log& log,
                                                  double known_kpa);
+
+/// RMS difference between reading and reference over the measured cycles of a track step [mm], for each of
+/// the two controllers.
+struct RigTracking {
+  double recalibrated_rmse_mm = 0;
+  double extended_rmse_mm = 0;
+  int cycles = 0;
+};
+
+/// Tracks the reference of `gain` on one channel of the rig twice: with the controller for the refitted model
+/// and with the controller for the extended model. Recordings are written to `folder`.
+[[nodiscard]] tl::expected<RigTracking, NotPlayed> track_on_rig(
+    const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
+    const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);
+
+/// Returns the value of the key "closed_loop.on_rig" of investigation.json.
+[[nodiscard]] result::Fields fields_of(const RigTracking& tracking);
 
 }  // namespace softgrip::tools

@@ -1,4 +1,4 @@
-#include "tools/investigation/rig_tracking.h"
+#include "tools/investigation/experiment_rig.h"
 
 #include <cmath>
 

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
-#include "tools/client/last_health.h"
+#include "tools/client/daemon_text.h"
 
 namespace softgrip::web {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/client/own_start.h"
+#include "tools/client/daemon_client.h"
 
 namespace softgrip::web {
 

@@ -1,4 +1,4 @@
-#include "tools/web/http_engine.h"
+#include "tools/web/site.h"
 
 #include <algorithm>
 #include <cstring>

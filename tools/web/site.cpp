@@ -9,7 +9,6 @@
 #include "tools/web/access/gate.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/metrics.h"
-#include "tools/web/page/page_files.h"
 
 namespace softgrip::web {
 

@@ -8,16 +8,25 @@
 #include <string>
 #include <string_view>
 
+#include <httplib.h>
 #include <nlohmann/json.hpp>
 
 #include "base/time.h"
 #include "rig/web_file/settings.h"
 #include "tools/web/access/gate.h"
 #include "tools/web/archive.h"
-#include "tools/web/http_engine.h"
 #include "tools/web/live_state.h"
 
 namespace softgrip::web {
+
+/// Uses cpp-httplib as a function that converts the bytes of a request to the bytes of its response. The
+/// sockets and threads of cpp-httplib are not used, so a slow client occupies no thread and delays no other
+/// client.
+class HttpEngine : public httplib::Server {
+ public:
+  /// Returns the response to a complete request. Throws no exception for any bytes that a client sends.
+  [[nodiscard]] std::string answer(std::string_view request);
+};
 
 /// Counters of the program softgrip-web. Its metrics contain these counters.
 struct ServerCounts {
@@ -106,5 +115,11 @@ class Site {
 
 /// Returns the name of the role: "none", "look" or "operate".
 [[nodiscard]] std::string_view name_of(Role role) noexcept;
+
+/// The files of the page. They are compiled into the program, so that a path in a browser's request never
+/// selects a file on the disk.
+[[nodiscard]] std::string_view page_html() noexcept;
+[[nodiscard]] std::string_view page_css() noexcept;
+[[nodiscard]] std::string_view page_js() noexcept;
 
 }  // namespace softgrip::web

@@ -6,8 +6,8 @@
 
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
-#include "simulation/emulator/control.h"
 #include "simulation/emulator/finger.h"
+#include "simulation/emulator/server.h"
 
 namespace softgrip::simulation::emulator_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/client/last_health.h"
+#include "tools/client/daemon_text.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

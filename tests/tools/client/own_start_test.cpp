@@ -1,4 +1,4 @@
-#include "tools/client/own_start.h"
+#include "tools/client/daemon_client.h"
 
 #include <gtest/gtest.h>
 

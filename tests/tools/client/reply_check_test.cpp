@@ -1,4 +1,3 @@
-#include "tools/client/reply_check.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +10,6 @@
 #include "tools/client/daemon_text.h"
 #include "tools/client/event_query.h"
 #include "tools/client/live_view.h"
-#include "tools/client/own_start.h"
 #include "tools/commissioning/examinations.h"
 
 namespace softgrip::tools::reply_check_test {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <map>
 
-#include "rig/rig_comparison.h"
+#include "rig/check.h"
 #include "rig/rig_file.h"
 #include "tools/commissioning/rig_template.h"
 

@@ -4,7 +4,6 @@
 
 #include "document/problem.h"
 #include "model/file/model_file.h"
-#include "tools/exporting/c_fragments.h"
 
 // These tests check the text of the exported C source. tests/system/test_export.py compares the results of
 // the compiled source with `softgrip simulate`.

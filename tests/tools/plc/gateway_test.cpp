@@ -13,7 +13,7 @@
 #include "base/net/listener.h"
 #include "base/periodic_schedule.h"
 #include "tests/tools/daemon_lines.h"
-#include "tools/client/reply_check.h"
+#include "tools/client/daemon_client.h"
 #include "tools/plc/server.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/tools/daemon_lines.h"
-#include "tools/client/reply_check.h"
+#include "tools/client/daemon_client.h"
 #include "tools/web/metrics/metrics.h"
 
 namespace softgrip::web::live_state_test {

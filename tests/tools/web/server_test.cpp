@@ -23,7 +23,7 @@
 
 #include "base/net/listener.h"
 #include "tools/web/connection_limits.h"
-#include "tools/web/page/page_files.h"
+#include "tools/web/site.h"
 
 namespace softgrip::web::server_test {
 namespace {
