@@ -13,32 +13,28 @@
 //   Usage: build/release/bench/exchange_bench [exchanges, default 20000] [any|one|two]
 
 #include <modbus/modbus.h>
-#include <netinet/in.h>
 #include <pthread.h>
 #include <sched.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "base/clock.h"
 #include "drivers/modbus/modbus_board.h"
-#include "rig/board_map_file.h"
+#include "tests/drivers/modbus/libmodbus_server.h"
 
 namespace {
 
 using namespace softgrip;
 using drivers::ModbusBoard;
+using drivers::test::LibmodbusServer;
 
 constexpr std::size_t block = 100;
 
@@ -56,54 +52,6 @@ void keep_on(pthread_t thread, int place) {
     std::exit(1);
   }
 }
-
-/// A server of libmodbus in a thread. Each server handles one session at a time.
-class Server {
- public:
-  Server() : context_(::modbus_new_tcp("127.0.0.1", 0)), mapping_(::modbus_mapping_new(64, 64, 512, 64)) {
-    listener_ = ::modbus_tcp_listen(context_, 1);
-    sockaddr_in address{};
-    socklen_t size = sizeof address;
-    ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-    port_ = ntohs(address.sin_port);
-    thread_ = std::thread([this] { serve(); });
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-  Server(Server&&) = delete;
-  Server& operator=(Server&&) = delete;
-  ~Server() {
-    ::shutdown(listener_, SHUT_RDWR);
-    thread_.join();
-    ::close(listener_);
-    ::modbus_mapping_free(mapping_);
-    ::modbus_free(context_);
-  }
-  [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Returns the processor on which the server answered the last request.
-  [[nodiscard]] int processor() const { return processor_; }
-  void keep_on(int place) { ::keep_on(thread_.native_handle(), place); }
-
- private:
-  void serve() {
-    std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> request{};
-    while (::modbus_tcp_accept(context_, &listener_) >= 0) {
-      for (int size = ::modbus_receive(context_, request.data()); size >= 0;
-           size = ::modbus_receive(context_, request.data())) {
-        processor_ = ::sched_getcpu();
-        ::modbus_reply(context_, request.data(), size, mapping_);
-      }
-      ::modbus_close(context_);
-    }
-  }
-
-  modbus_t* context_;
-  modbus_mapping_t* mapping_;
-  int listener_ = -1;
-  std::uint16_t port_ = 0;
-  std::atomic<int> processor_ = -1;
-  std::thread thread_;
-};
 
 /// Returns the board map for both clients: two integer outputs from register 256 and two integer inputs from
 /// register 0.
@@ -137,7 +85,7 @@ drivers::ModbusSettings settings(std::uint16_t port, const drivers::BoardMap& ma
 
 struct Contender {
   std::string name;
-  const Server& server;
+  const LibmodbusServer& server;
   std::function<bool()> exchange;
   std::vector<double> one_processor = {};   ///< durations of exchanges with server and client on one
                                             ///< processor [us]
@@ -191,9 +139,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: exchange_bench [exchanges] [any|one|two]\n");
     return 2;
   }
-  std::array<Server, 4> servers;
+  std::array<LibmodbusServer, 4> servers;
   if (processors != "any") {
-    for (Server& server : servers) server.keep_on(processors == "one" ? 0 : 1);
+    for (LibmodbusServer& server : servers) keep_on(server.thread(), processors == "one" ? 0 : 1);
     keep_on(::pthread_self(), 0);
   }
   ModbusBoard pair(settings(servers[0].port(), map_with(false)));
