@@ -1,8 +1,5 @@
 #include "base/statistics.h"
 
-#include <algorithm>
-#include <cmath>
-#include <initializer_list>
 #include <vector>
 
 namespace softgrip {

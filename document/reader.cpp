@@ -1,7 +1,6 @@
 #include "document/reader.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/numbers.h"
 #include "base/text.h"

@@ -4,9 +4,6 @@
 #include <array>
 #include <cctype>
 #include <optional>
-#include <string_view>
-
-#include "document/problem.h"
 
 namespace softgrip::document {
 namespace {

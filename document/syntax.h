@@ -4,7 +4,6 @@
 // Finds the brackets that are open at a location of a text. Messages about unclosed brackets use this
 // function.
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>

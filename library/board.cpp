@@ -1,7 +1,6 @@
 #include "library/include/softgrip/board.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/clock.h"

@@ -1,9 +1,6 @@
 #include "library/include/softgrip/control.h"
 
 #include <cmath>
-#include <limits>
-#include <utility>
-#include <vector>
 
 #include "control/elements/limits.h"
 #include "control/elements/pid.h"

@@ -3,7 +3,6 @@
 // reading.
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>

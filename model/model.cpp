@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
-#include "model/output_unit.h"
 
 namespace softgrip::model {
 namespace {

@@ -12,7 +12,6 @@
 #include <optional>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "model/model.h"
 #include "model/registry.h"

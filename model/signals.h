@@ -2,9 +2,7 @@
 // Provides the test signals. The test signals are pressure commands that start and end at 0 kPa and do not
 // exceed 60 kPa.
 
-#include <optional>
 #include <string_view>
-#include <vector>
 
 #include "base/enum_table.h"
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/enum_table.h"
@@ -13,7 +11,6 @@
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "rig/plc_file/settings.h"
-#include "rig/rig_file.h"
 #include "rig/web_file/settings.h"
 
 namespace softgrip::rig {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <string_view>
 
 #include "base/numbers.h"
 #include "control/feedforward/free_curve.h"

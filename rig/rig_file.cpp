@@ -7,10 +7,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
 
 #include "base/text.h"
-#include "document/node.h"
 #include "model/file/model_file.h"
 #include "rig/rig_file_reader.h"
 

@@ -1,7 +1,5 @@
 // Reads the digital lines of a rig file.
 
-#include <array>
-
 #include "drivers/gpio/gpio_lines.h"
 #include "rig/rig_file_reader.h"
 

@@ -4,7 +4,6 @@
 // rig_file*.cpp uses this file.
 
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>

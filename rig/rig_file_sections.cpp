@@ -1,6 +1,5 @@
 // Reads the maps of a rig file that apply to the whole rig, and the keys that all real boards share.
 
-#include <array>
 #include <charconv>
 
 #include "base/numbers.h"

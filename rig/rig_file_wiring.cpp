@@ -2,7 +2,6 @@
 // sensor.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/numbers.h"

@@ -1,7 +1,5 @@
 // Creates the page of the control study.
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/numbers.h"

@@ -1,6 +1,5 @@
 // Formats the control study as text for a terminal and as JSON.
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"

@@ -1,7 +1,6 @@
 #include "bench/studies/models.h"
 
 #include <array>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,7 +8,6 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
-#include "model/catalogue.h"
 #include "model/named.h"
 
 namespace softgrip::studies {

@@ -1,6 +1,5 @@
 #include "control/elements/grip_result.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 

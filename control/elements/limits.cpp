@@ -1,8 +1,5 @@
 #include "control/elements/limits.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace softgrip::control {
 
 double in_range(const LimitSettings& limits, double pressure_kpa) noexcept {

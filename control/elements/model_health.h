@@ -12,8 +12,6 @@
 // false alarms. An error of the model raises an alarm if it is larger than model_error_mm or slower than
 // correlation_time_s.
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string_view>
 

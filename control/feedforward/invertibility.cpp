@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
-#include <vector>
 
 #include "base/numbers.h"
 #include "control/feedforward/pressure_plan.h"

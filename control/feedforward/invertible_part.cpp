@@ -2,7 +2,6 @@
 
 #include <array>
 #include <utility>
-#include <vector>
 
 #include "base/statistics.h"
 #include "model/catalogue.h"

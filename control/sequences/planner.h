@@ -2,7 +2,6 @@
 // Computes the feedforward of a complete reference before the sequence starts: the command with which the
 // model follows this reference.
 
-#include <cstddef>
 #include <functional>
 #include <stop_token>
 #include <vector>

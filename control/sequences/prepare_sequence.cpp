@@ -2,7 +2,6 @@
 
 #include "control/sequences/parameters.h"
 #include "control/sequences/sequence_plans.h"
-#include "document/node.h"
 
 namespace softgrip::control {
 

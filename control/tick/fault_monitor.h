@@ -2,7 +2,6 @@
 // Detects fault conditions in a tick, and decides which condition has lasted long enough to be a fault. The
 // supervisor latches the faults.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -1,9 +1,6 @@
 #pragma once
 // The first stage of a tick: finds the conditions on which the supervisor decides.
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 

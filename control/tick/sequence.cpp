@@ -1,9 +1,7 @@
 #include "control/tick/sequence.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 
 namespace softgrip::control {
 

@@ -1,7 +1,6 @@
 #include "control/tick/supervisor.h"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "base/enum_table.h"
 

@@ -1,7 +1,6 @@
 #include "control/tuning/gain_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>

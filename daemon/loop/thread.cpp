@@ -1,7 +1,6 @@
 #include "daemon/loop/thread.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <exception>
 #include <memory>
 #include <system_error>

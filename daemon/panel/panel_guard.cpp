@@ -1,7 +1,5 @@
 #include "daemon/panel/panel.h"
 
-#include <array>
-#include <atomic>
 #include <csignal>
 #include <cstddef>
 

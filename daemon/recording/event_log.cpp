@@ -11,7 +11,6 @@
 #include "base/numbers.h"
 #include "control/elements/fault.h"
 #include "control/elements/model_health.h"
-#include "control/tick/sequence.h"
 #include "daemon/recording/csv_row.h"
 
 namespace softgrip::daemon {

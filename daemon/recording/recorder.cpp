@@ -1,7 +1,6 @@
 #include "daemon/recording/recorder.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <utility>

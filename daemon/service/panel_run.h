@@ -2,7 +2,6 @@
 // Runs the panel in its own thread: opens the digital lines, reads and writes them, and releases them at the
 // end.
 
-#include <memory>
 #include <optional>
 
 #include "daemon/loop/real_time.h"

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +18,6 @@
 #include "base/text.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/trusted_user.h"
-#include "rig/rig_file.h"
 
 namespace softgrip::daemon {
 namespace {

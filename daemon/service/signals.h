@@ -3,7 +3,6 @@
 
 #include <array>
 #include <csignal>
-#include <ctime>
 
 #include "base/periodic_schedule.h"
 

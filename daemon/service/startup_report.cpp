@@ -1,7 +1,6 @@
 #include "daemon/service/daemon.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include <fmt/format.h>
 

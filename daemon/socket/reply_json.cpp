@@ -1,7 +1,6 @@
 #include "daemon/socket/reply_json.h"
 
 #include "daemon/recording/csv_row.h"
-#include "daemon/socket/client_request.h"
 #include "daemon/socket/status_json.h"
 
 namespace softgrip::daemon {

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <future>
 #include <thread>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,6 @@
 #include "drivers/board/round_trip.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/numbers.h"

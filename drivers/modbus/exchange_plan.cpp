@@ -3,7 +3,6 @@
 #include <modbus/modbus.h>
 
 #include <algorithm>
-#include <array>
 
 #include "drivers/modbus/modbus_message.h"
 

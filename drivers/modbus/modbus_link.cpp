@@ -12,10 +12,8 @@
 #include <cstdio>
 
 #include "base/clock.h"
-#include "base/descriptor.h"
 #include "base/text.h"
 #include "base/time.h"
-#include "drivers/modbus/modbus_message.h"
 #include "drivers/modbus/modbus_rtu_link.h"
 #include "drivers/modbus/modbus_tcp_link.h"
 #include "drivers/modbus/tcp_socket.h"

@@ -1,7 +1,5 @@
 #include "drivers/modbus/modbus_message.h"
 
-#include <array>
-
 #include <modbus/modbus.h>
 
 namespace softgrip::drivers {

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "drivers/board/registers.h"
 
 namespace softgrip::drivers {
 namespace {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <utility>
@@ -17,7 +16,6 @@
 #include "base/periodic_schedule.h"
 #include "base/text.h"
 #include "base/time.h"
-#include "drivers/modbus/serial_port.h"
 
 namespace softgrip::drivers {
 namespace {

@@ -2,7 +2,6 @@
 // Implements links to Modbus RTU modules: on a serial line of this computer, and on the serial line of a
 // serial server to which a TCP connection leads. Both links have the Modbus RTU framing.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>

@@ -5,9 +5,6 @@
 
 #include <utility>
 
-#include "base/text.h"
-#include "drivers/modbus/mbap.h"
-
 namespace softgrip::drivers {
 
 // libmodbus gets a socket that is already open. Therefore, libmodbus does not use the address in this

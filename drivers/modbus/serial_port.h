@@ -2,7 +2,6 @@
 // Opens serial devices with the settings of a serial line, and calculates the timing of this line.
 // Checks that a path is the name of exactly one serial device of this computer.
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>

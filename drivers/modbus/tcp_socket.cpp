@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/descriptor.h"
 #include "base/text.h"
 
 namespace softgrip::drivers {

@@ -1,7 +1,6 @@
 #include "drivers/modbus_server/registers.h"
 
 #include <modbus/modbus.h>
-#include <algorithm>
 
 namespace softgrip::modbus {
 namespace {

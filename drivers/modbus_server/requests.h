@@ -4,7 +4,6 @@
 // also uses these types to simulate transmission faults.
 
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

@@ -1,7 +1,6 @@
 #pragma once
 // Models creep that starts above a threshold pressure.
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 

@@ -14,7 +14,6 @@
 // be deprecated names (see block.h); a written file contains the present names. With `output_unit: deg`, the
 // output of the model is a bending angle, and `mm` in the names of parameters means deg.
 
-#include <cstdint>
 #include <optional>
 #include <string>
 

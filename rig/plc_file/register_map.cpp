@@ -4,7 +4,6 @@
 #include <charconv>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

@@ -7,7 +7,6 @@
 #include <modbus/modbus.h>
 
 #include "base/numbers.h"
-#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 namespace {

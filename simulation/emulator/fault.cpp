@@ -1,12 +1,10 @@
 #include "simulation/emulator/fault.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "base/enum_table.h"
 #include "drivers/modbus/modbus_message.h"
-#include "simulation/plant/plant.h"
 
 namespace softgrip::simulation {
 namespace {

@@ -1,7 +1,6 @@
 #include "simulation/emulator/fault_schedule.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/time.h"
 

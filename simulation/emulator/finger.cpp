@@ -1,7 +1,6 @@
 #include "simulation/emulator/finger.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 namespace softgrip::simulation {

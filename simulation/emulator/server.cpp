@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <iterator>
-#include <vector>
 
 namespace softgrip::simulation {
 namespace {

@@ -15,7 +15,6 @@
 #include <functional>
 #include <list>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

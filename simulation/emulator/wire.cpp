@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
-#include "base/time.h"
 #include "drivers/modbus/rtu_frame.h"
 #include "simulation/emulator/wire.h"
 

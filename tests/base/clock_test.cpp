@@ -8,7 +8,6 @@
 
 #include <cstdio>
 #include <ctime>
-#include <string>
 
 #include "base/periodic_schedule.h"
 

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
-#include <string>
 
 #include "base/descriptor.h"
 

@@ -9,7 +9,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <string>
 
 namespace softgrip::files_test {
 namespace {

@@ -1,7 +1,5 @@
 #include "base/json.h"
 
-#include <string>
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

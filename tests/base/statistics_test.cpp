@@ -1,7 +1,6 @@
 #include "base/statistics.h"
 
 #include <array>
-#include <cmath>
 #include <random>
 #include <utility>
 #include <vector>

@@ -1,8 +1,6 @@
 #include "base/text.h"
 
 #include <cstdio>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>

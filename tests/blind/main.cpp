@@ -15,7 +15,6 @@
 // controller plays the commands of all logs.
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>

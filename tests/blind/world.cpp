@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 #include <random>
-#include <stdexcept>
 
 #include "variation.h"
 

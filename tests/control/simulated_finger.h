@@ -2,9 +2,7 @@
 // Simulates a finger with a model of its own and with a time step that is smaller than the tick of the
 // controller. The controller sends commands to this finger and reads its sensor, as it does with a board.
 
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <random>
 
 #include "control/tick/settings.h"

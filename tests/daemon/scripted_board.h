@@ -2,7 +2,6 @@
 // A board for tests. The board stores the values that the daemon writes. The test specifies the responses of
 // the board.
 
-#include <algorithm>
 #include <functional>
 #include <limits>
 #include <string>

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <charconv>
 #include <clocale>
 #include <cmath>
 #include <random>

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 namespace softgrip::document::syntax_test {
 namespace {
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "document/node.h"
-#include "document/number.h"
 #include "document/reader.h"
 
 namespace {

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "library/include/softgrip/board.h"
 #include "tests/library/finger.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "library/include/softgrip/error.h"
 #include "library/include/softgrip/export.h"

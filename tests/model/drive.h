@@ -1,7 +1,6 @@
 #pragma once
 // Functions for tests that apply inputs to single blocks and to whole chains.
 
-#include <cmath>
 #include <span>
 #include <vector>
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace softgrip::model::port_flow_test {
 namespace {
 

@@ -3,7 +3,6 @@
 // from model/. The equations contain the delay and the lag of the valve, the Bouc-Wen element and the
 // Kelvin-Voigt element. They contain no other block of the chain.
 
-#include <functional>
 #include <vector>
 
 namespace softgrip::model::testing {

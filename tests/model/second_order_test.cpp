@@ -1,9 +1,5 @@
 #include "model/second_order.h"
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-
 #include <gtest/gtest.h>
 
 #include "model/segment.h"

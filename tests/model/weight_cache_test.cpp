@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
 #include <set>
 
 namespace softgrip::model::weight_cache_test {

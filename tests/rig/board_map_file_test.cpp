@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 namespace softgrip::rig::board_map_file_test {
 namespace {
 

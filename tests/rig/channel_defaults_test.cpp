@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <string>
 
 #include "rig/rig_file.h"
 #include "tests/support/files.h"

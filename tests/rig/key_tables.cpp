@@ -4,7 +4,6 @@
 //   key_tables --check    exits with 1 if a page in the source tree differs from the declarations
 //   key_tables --write    writes the pages
 
-#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <string>

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <regex>
-#include <string>
 
 #include "control/sequences/sequence_file.h"
 #include "tests/support/files.h"

@@ -4,7 +4,6 @@
 //
 //   Command: scripts/fuzz.sh rig_file_fuzz 30
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>

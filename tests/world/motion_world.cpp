@@ -1,7 +1,6 @@
 #include "tests/world/motion_world.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

@@ -9,11 +9,9 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "base/random.h"
 #include "tests/world/command_watch.h"
 #include "tests/world/master_in_world.h"
 #include "tools/plc/gateway.h"

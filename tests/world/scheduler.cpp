@@ -1,7 +1,6 @@
 #include "tests/world/scheduler.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/random.h"
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>

@@ -13,7 +13,6 @@
 #include "sysid/diagnosis/experiments/experiment.h"
 #include "sysid/identification/validate.h"
 #include "sysid/logs/simulated_log.h"
-#include "tools/investigation/experiment_rig.h"
 
 namespace softgrip::tools {
 namespace {

@@ -2,9 +2,7 @@
 // Options, requests and output of all subcommands that connect to the daemon.
 
 #include <functional>
-#include <memory>
 #include <string>
-#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 

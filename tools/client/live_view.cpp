@@ -1,13 +1,9 @@
 #include "tools/client/live_view.h"
 
-#include <algorithm>
 #include <cctype>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include "tools/client/daemon_client.h"
-#include "tools/client/daemon_text.h"
 
 namespace softgrip::tools {
 namespace {

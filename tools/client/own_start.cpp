@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <string_view>
 
 #include "control/elements/fault.h"
 

@@ -1,9 +1,7 @@
 #include "tools/client/daemon_client.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 
 #include "base/json.h"

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 namespace softgrip::tools {
 namespace {

@@ -3,7 +3,6 @@
 // and checks of option values that CLI11 does not provide.
 
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>

@@ -6,12 +6,10 @@
 #include <exception>
 #include <iterator>
 #include <set>
-#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "base/exit_code.h"
 #include "base/version.h"
 #include "document/problem.h"
 #include "tools/command_line/input_files.h"

@@ -1,7 +1,6 @@
 #pragma once
 // Controls the terminal for a live view and restores it afterwards. Asks the user to confirm an action.
 
-#include <chrono>
 #include <cstddef>
 #include <string>
 #include <vector>

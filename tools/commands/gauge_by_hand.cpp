@@ -1,12 +1,10 @@
 #include "tools/commands/rig_to_move.h"
 
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "base/numbers.h"
 #include "tools/client/daemon_client.h"
-#include "tools/commissioning/procedure.h"
 
 namespace softgrip::tools {
 namespace {

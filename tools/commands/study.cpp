@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "bench/studies/control_study.h"
 #include "bench/studies/published.h"

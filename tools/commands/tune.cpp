@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"

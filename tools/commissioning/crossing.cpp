@@ -1,7 +1,6 @@
 #include "tools/commissioning/motion.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 

@@ -13,7 +13,6 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "document/problem.h"
 #include "drivers/modbus/serial_port.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"

@@ -1,9 +1,7 @@
 #include "tools/commissioning/motion_session.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>

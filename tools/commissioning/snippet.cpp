@@ -6,7 +6,6 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "document/number.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file.h"
 

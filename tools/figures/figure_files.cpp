@@ -5,10 +5,8 @@
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
-#include <utility>
 
 #include "base/files.h"
-#include "sysid/pages/page.h"
 
 namespace softgrip::tools {
 namespace {

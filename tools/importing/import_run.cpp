@@ -15,7 +15,6 @@
 #include "base/version.h"
 #include "document/problem.h"
 #include "sysid/import/conversion.h"
-#include "sysid/import/mapping.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/role_fit.h"
 #include "sysid/import/table_readers.h"

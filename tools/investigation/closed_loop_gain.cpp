@@ -6,14 +6,11 @@
 #include <future>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "base/numbers.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "control/feedforward/invertibility.h"
 #include "control/tuning/gain_search.h"
-#include "control/tuning/tracking_run.h"
 #include "model/blocks/outliers.h"
 #include "model/blocks/quantisation.h"
 #include "model/blocks/sensor_noise.h"

@@ -1,10 +1,8 @@
 #include "tools/investigation/diagnosis_folder.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "base/files.h"
 #include "base/numbers.h"

@@ -15,7 +15,6 @@
 #include "base/numbers.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
 
 namespace softgrip::tools {

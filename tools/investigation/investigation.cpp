@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
-#include <system_error>
 #include <utility>
 
 #include "base/enum_table.h"

@@ -7,7 +7,6 @@
 #include "sysid/import/conversion.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/table_readers.h"
-#include "sysid/logs/log.h"
 
 namespace softgrip::tools {
 

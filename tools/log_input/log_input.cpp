@@ -5,7 +5,6 @@
 #include <set>
 #include <span>
 
-#include "document/problem.h"
 #include "sysid/logs/command_before.h"
 #include "sysid/logs/signal_gaps.h"
 #include "tools/command_line/command.h"

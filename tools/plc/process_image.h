@@ -1,9 +1,7 @@
 #pragma once
 // Converts between the JSON of the daemon and the Modbus registers. Uses no sockets.
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include <nlohmann/json_fwd.hpp>

@@ -8,8 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "base/periodic_schedule.h"
-
 namespace softgrip::plc {
 
 std::string address_of(int socket) {

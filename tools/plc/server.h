@@ -1,7 +1,6 @@
 #pragma once
 // Serves Modbus clients on the network in one thread that never waits for a client.
 
-#include <chrono>
 #include <list>
 #include <string>
 

@@ -5,8 +5,6 @@
 #include <limits>
 
 #include "base/numbers.h"
-#include "sysid/pages/figure.h"
-#include "sysid/recordings/recording.h"
 
 namespace softgrip::tools {
 namespace {

@@ -8,7 +8,6 @@
 #include <exception>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

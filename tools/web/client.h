@@ -3,7 +3,6 @@
 // Finds the end of an HTTP request and checks that the server supports the request. Uses no sockets.
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
 

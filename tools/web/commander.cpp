@@ -5,8 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/client/daemon_client.h"
-
 namespace softgrip::web {
 
 namespace {

@@ -1,6 +1,5 @@
 #include "tools/web/live_state.h"
 
-#include <string>
 #include <utility>
 
 #include "base/json.h"

@@ -7,8 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/web/client.h"
-
 namespace softgrip::web {
 
 namespace {

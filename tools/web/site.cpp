@@ -1,12 +1,10 @@
 #include "tools/web/site.h"
 
-#include <array>
 #include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "tools/web/access/gate.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/metrics.h"
 

@@ -1,6 +1,5 @@
 #include "base/result/result.h"
 
-#include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,4 @@
 // Parameter values of the hidden effects.
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>

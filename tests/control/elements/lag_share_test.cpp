@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace softgrip::control::lag_share_test {
 namespace {
 

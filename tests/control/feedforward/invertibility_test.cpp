@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "model/blocks/asymmetric_bouc_wen.h"

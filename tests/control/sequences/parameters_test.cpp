@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "control/sequences/sequence_file.h"
 #include "tests/control/settings_fixture.h"

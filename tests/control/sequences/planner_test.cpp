@@ -4,9 +4,7 @@
 
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <tuple>
-#include <vector>
 
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"

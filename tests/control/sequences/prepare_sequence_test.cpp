@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <optional>
 #include <stop_token>
 #include <string>

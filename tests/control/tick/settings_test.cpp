@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
-#include <string>
 
 #include "tests/control/settings_fixture.h"
 

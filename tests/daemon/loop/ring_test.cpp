@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <atomic>
 #include <numeric>
 #include <random>
 #include <thread>
-#include <vector>
 
 #include "tests/daemon/loop/torn_value.h"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 #include <thread>
-#include <vector>
 
 namespace softgrip::daemon::statistics_test {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <atomic>
 #include <thread>
 
 #include "tests/daemon/loop/torn_value.h"

@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <random>
-#include <vector>
 
 namespace softgrip::daemon::trip_input_test {
 namespace {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <string>
 
 namespace softgrip::daemon::csv_row_test {
 namespace {

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 #include <nlohmann/json.hpp>
 
 #include "daemon/recording/run_json.h"

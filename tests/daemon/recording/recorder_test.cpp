@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

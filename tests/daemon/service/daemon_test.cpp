@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "base/files.h"
 #include "tests/daemon/rig_under_test.h"

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <string>
 #include <thread>
 
 #include "base/descriptor.h"

@@ -10,12 +10,9 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "base/clock.h"
 #include "base/files.h"

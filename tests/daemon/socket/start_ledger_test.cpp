@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 namespace softgrip::daemon::start_ledger_test {
 namespace {
 

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "drivers/board/board_map.h"

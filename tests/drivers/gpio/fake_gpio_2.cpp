@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cerrno>
-#include <optional>
 
 #include "tests/drivers/gpio/fake_gpio.h"
 

@@ -8,7 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "base/clock.h"
 #include "tests/drivers/modbus/modbus_board_fixture.h"

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "tests/drivers/modbus/modbus_board_fixture.h"
 
 namespace softgrip::drivers::modbus_modules_test {

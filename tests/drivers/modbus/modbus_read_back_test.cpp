@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <string>
 
 #include "tests/drivers/modbus/modbus_board_fixture.h"
 

@@ -7,10 +7,8 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <string>
 
 #include "base/clock.h"
 #include "drivers/modbus/modbus_message.h"

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
-#include <string>
 
 #include "base/clock.h"
 #include "drivers/modbus/tcp_socket.h"

@@ -15,7 +15,6 @@
 #include <atomic>
 #include <csignal>
 #include <random>
-#include <string>
 #include <thread>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #pragma once
 // Wiring that most tests of the drivers use: two fingers on the first terminals of a board.
 
-#include <string>
 #include <vector>
 
 #include "drivers/board/board_map.h"

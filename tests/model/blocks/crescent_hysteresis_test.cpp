@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/model/drive.h"
 
 namespace softgrip::model::testing::crescent_hysteresis_test {

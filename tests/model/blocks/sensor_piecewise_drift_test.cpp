@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 #include "tests/model/drive.h"
 
 namespace softgrip::model::testing::sensor_piecewise_drift_test {

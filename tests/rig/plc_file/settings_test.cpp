@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
-#include <string>
 
 #include "base/files.h"
 #include "tests/support/files.h"

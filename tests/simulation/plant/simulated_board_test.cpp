@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "model/catalogue.h"
 #include "model/file/model_file.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "tools/client/daemon_text.h"

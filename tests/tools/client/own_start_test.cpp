@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
 
 namespace softgrip::tools::own_start_test {
 namespace {

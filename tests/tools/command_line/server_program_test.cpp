@@ -4,9 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "tools/command_line/terminal.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
-#include <string>
 #include <vector>
 
 #include "tools/command_line/options.h"

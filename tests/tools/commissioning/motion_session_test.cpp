@@ -6,12 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "rig/rig_file.h"
 #include "tests/daemon/rig_under_test.h"

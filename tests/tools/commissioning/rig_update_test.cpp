@@ -7,7 +7,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <string>
 
 #include "base/files.h"
 #include "rig/rig_file.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 // This file checks the signals. tests/system/test_export.py checks the exported files with the programs that
 // read them.
 namespace softgrip::tools::signals_test {

@@ -7,8 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <optional>
-#include <string>
 #include <utility>
 
 #include "document/problem.h"

@@ -5,9 +5,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "base/files.h"
 #include "base/net/listener.h"

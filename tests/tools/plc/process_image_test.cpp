@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 #include <nlohmann/json.hpp>
 
 namespace softgrip::plc::process_image_test {

@@ -5,10 +5,8 @@
 #include <sys/socket.h>
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <utility>
 
 #include "base/files.h"

@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <string>
-#include <vector>
 
 #include "base/files.h"
 #include "base/net/listener.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "tests/tools/daemon_lines.h"
 #include "tools/client/daemon_client.h"
 #include "tools/web/metrics/metrics.h"

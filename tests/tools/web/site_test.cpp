@@ -8,7 +8,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <string>
 
 namespace softgrip::web::site_test {
 namespace {

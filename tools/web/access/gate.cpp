@@ -1,11 +1,9 @@
 #include "tools/web/access/gate.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "base/net/listener.h"
-#include "base/periodic_schedule.h"
 
 namespace softgrip::web {
 namespace {

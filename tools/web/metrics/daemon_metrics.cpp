@@ -1,9 +1,6 @@
 #include "tools/web/metrics/metrics.h"
 
-#include <array>
 #include <limits>
-#include <string>
-#include <string_view>
 
 #include <nlohmann/json.hpp>
 

@@ -1,9 +1,6 @@
 #include "tools/web/metrics/metrics.h"
 
-#include <algorithm>
 #include <map>
-#include <string>
-#include <string_view>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,6 @@
 #include "base/enum_table.h"
 #include "tools/web/metrics/metrics.h"
 
-#include <array>
 #include <cmath>
 
 #include "base/numbers.h"
