@@ -1,4 +1,4 @@
-#include "document/key_hint.h"
+#include "document/reader.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/numbers.h"
-#include "document/number.h"
+#include "document/node.h"
 
 namespace softgrip::document {
 

@@ -1,4 +1,4 @@
-#include "document/number.h"
+#include "document/node.h"
 
 #include <algorithm>
 #include <charconv>

@@ -4,8 +4,7 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "document/key_hint.h"
-#include "document/number.h"
+#include "document/node.h"
 #include "document/problem.h"
 
 namespace softgrip::document {

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "library/cancellable.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"
 #include "sysid/changes/change.h"

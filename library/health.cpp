@@ -6,7 +6,6 @@
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/result/result.h"
-#include "library/cancellable.h"
 #include "library/model_parts.h"
 #include "sysid/health/health_result.h"
 

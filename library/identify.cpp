@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "base/numbers.h"
-#include "library/cancellable.h"
 #include "library/include/softgrip/validate.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"

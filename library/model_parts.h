@@ -1,16 +1,21 @@
 #pragma once
 // Defines the internal data of a public Model, and the checks of arguments that all public functions share.
+// Runs computations of the library that a request through a std::stop_token can end early.
 // Converts limits and readings between the public interface and the types of control/ and drivers/.
 
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/thread_budget.h"
 #include "control/elements/limits.h"
 #include "document/problem.h"
 #include "library/include/softgrip/board.h"
 #include "library/include/softgrip/control.h"
+#include "library/include/softgrip/error.h"
 #include "library/include/softgrip/model.h"
 #include "model/model.h"
 #include "model/reading.h"
@@ -54,6 +59,18 @@ control::LimitSettings checked(const Limits& limits);
 [[nodiscard]] Validity validity_of(model::Validity validity) noexcept;
 [[nodiscard]] model::Reading reading_of(const Reading& reading) noexcept;
 [[nodiscard]] Reading reading_of(const model::Reading& reading) noexcept;
+
+/// Calls work() and returns its result. work() may use `threads` threads (0: one per processor core). Throws
+/// Cancelled if a request through `stop` ended work() early.
+template <class Work>
+auto cancellable(unsigned threads, const std::stop_token& stop, Work&& work) {
+  const ThreadBudget budget(threads, stop);
+  try {
+    return std::forward<Work>(work)();
+  } catch (const WorkCancelled&) {
+    throw Cancelled("the computation ended early, because its stop token requested a stop");
+  }
+}
 
 }  // namespace library
 }  // namespace softgrip

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "document/number.h"
+#include "document/node.h"
 
 namespace softgrip::rig {
 

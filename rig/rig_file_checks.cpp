@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "document/number.h"
+#include "document/node.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {

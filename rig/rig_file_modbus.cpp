@@ -7,7 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "document/number.h"
+#include "document/node.h"
 #include "drivers/modbus/serial_port.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file_reader.h"

@@ -1,7 +1,6 @@
 #pragma once
 // The functions by which read_rig() reads the maps of a rig file. Only rig_file*.cpp uses this file.
-// Reads the map `channel_defaults` of a rig file, which contains the keys that all channels share. Only
-// rig_file*.cpp uses this file.
+// Reads the map `channel_defaults` of a rig file, which contains the keys that all channels share.
 
 #include <cstddef>
 #include <map>

@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "base/numbers.h"
-#include "document/number.h"
+#include "document/node.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {

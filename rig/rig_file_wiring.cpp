@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "document/number.h"
+#include "document/node.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file_reader.h"
 

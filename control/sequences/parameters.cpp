@@ -7,7 +7,7 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "control/sequences/sequence_keys.h"
-#include "document/key_hint.h"
+#include "document/reader.h"
 
 namespace softgrip::control {
 namespace {

@@ -1,4 +1,4 @@
-#include "drivers/modbus/mbap.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::drivers {
 namespace {

@@ -16,7 +16,6 @@
 #include "base/time.h"
 #include "drivers/modbus/modbus_rtu_link.h"
 #include "drivers/modbus/modbus_tcp_link.h"
-#include "drivers/modbus/tcp_socket.h"
 
 namespace softgrip::drivers {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 // Builds Modbus requests and checks responses without framing: the bytes from the function code on. These
 // bytes do not depend on the transmission (TCP or serial line). A response comes from an untrusted source.
-// The functions in mbap.h and rtu_frame.h check the framing of the bytes. The texts of Modbus exceptions are
-// provided without allocating memory.
+// The functions at the end of this file and in rtu_frame.h check the framing of the bytes. The texts of
+// Modbus exceptions are provided without allocating memory.
 
 #include <array>
 #include <cstddef>
@@ -118,5 +118,29 @@ struct ModbusReply {
 
 /// Returns the text of a Modbus exception.
 [[nodiscard]] const char* text_of_exception(unsigned code) noexcept;
+
+// The following functions build and check the frames of Modbus TCP, which consist of the MBAP header and a
+// PDU. Source of the format: MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3.
+
+/// Size of the MBAP header [bytes]. The header consists of transaction id, protocol id and length, with two
+/// bytes each, and the unit id with one byte.
+inline constexpr std::size_t mbap_size = 7;
+inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id in the frame
+
+/// Writes the MBAP header for the PDU (function code and data) that begins at frame[mbap_size] and has
+/// `pdu_size` bytes. Returns the size of the frame.
+std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
+                     std::uint8_t unit) noexcept;
+
+/// Writes the frame of a request. Returns the size of the frame; 0 for a request that reply_pdu_size()
+/// refuses.
+[[nodiscard]] std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction,
+                                        std::uint8_t unit, Frame& frame) noexcept;
+
+/// Checks `bytes`, which are all bytes received since the request was sent. The state `incomplete` means that
+/// `bytes` are a correct beginning of the response. Therefore, a wrong header is detected before the rest of
+/// the response arrives.
+[[nodiscard]] ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
+                                      std::uint16_t transaction, std::uint8_t unit) noexcept;
 
 }  // namespace softgrip::drivers

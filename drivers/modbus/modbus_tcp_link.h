@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "drivers/modbus/mbap.h"
 #include "drivers/modbus/modbus_link.h"
+#include "drivers/modbus/modbus_message.h"
 
 namespace softgrip::drivers {
 

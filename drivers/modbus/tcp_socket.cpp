@@ -1,4 +1,4 @@
-#include "drivers/modbus/tcp_socket.h"
+#include "drivers/modbus/modbus_link.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "drivers/modbus/mbap.h"
+#include "drivers/modbus/modbus_message.h"
 #include "drivers/modbus/rtu_frame.h"
 
 namespace softgrip::modbus {

@@ -1,4 +1,4 @@
-#include "document/key_hint.h"
+#include "document/reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Tests the conversion of texts to numbers. The conversion must be exact and independent of the locale. If a
 // text is not a number, the message must give a hint.
 
-#include "document/number.h"
 #include "base/numbers.h"
+#include "document/node.h"
 
 #include <gtest/gtest.h>
 

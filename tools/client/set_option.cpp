@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "document/number.h"
+#include "document/node.h"
 
 namespace softgrip::tools {
 namespace {

@@ -1,7 +1,7 @@
 // Compares the frames of requests with the examples in section 6 of the specification "Modbus application
 // protocol V1.1b3".
 
-#include "drivers/modbus/mbap.h"
+#include "drivers/modbus/modbus_message.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "drivers/board/registers.h"
-#include "drivers/modbus/mbap.h"
 #include "drivers/modbus/modbus_message.h"
 #include "tests/support/require.h"
 

@@ -9,7 +9,7 @@
 #include <cerrno>
 
 #include "base/clock.h"
-#include "drivers/modbus/tcp_socket.h"
+#include "drivers/modbus/modbus_link.h"
 #include "tests/drivers/modbus/scripted_server.h"
 
 namespace softgrip::drivers::modbus_rtu_tcp_link_test {
