@@ -23,10 +23,6 @@ class CharacteristicMap {
         last_slope_(exponential(curvature) / phi1_) {}
 
   [[nodiscard]] const T& curvature() const { return curvature_; }
-  /// first_slope() returns g'(0), the slope at the start of the map. last_slope() returns g'(span), the slope
-  /// at the end of the map.
-  [[nodiscard]] const T& first_slope() const { return first_slope_; }
-  [[nodiscard]] const T& last_slope() const { return last_slope_; }
 
   template <class U>
   [[nodiscard]] U value(const U& z) const {
