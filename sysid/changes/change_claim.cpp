@@ -17,12 +17,6 @@
 namespace softgrip::sysid {
 namespace {
 
-void add(PairedLosses& losses, const PairedLosses& more) {
-  losses.worse.insert(losses.worse.end(), more.worse.begin(), more.worse.end());
-  losses.better.insert(losses.better.end(), more.better.begin(), more.better.end());
-  losses.rows.insert(losses.rows.end(), more.rows.begin(), more.rows.end());
-}
-
 /// Returns true if the effect increases the prediction error of left-out later runs. The effect is fitted to
 /// all runs except one and then predicts this run. A run in which the effect does not occur has no influence
 /// on the result, because its two errors are equal. For example, a run may not reach the saturation of a
@@ -36,9 +30,9 @@ bool predicts_worse(const CauseSearch& search, const Effect& effect) {
     const LaterReadings rest = readings.without(units, unit), own = readings.only(units, unit);
     if (rest.records().empty() || own.records().empty()) continue;
     const EffectFit fit = fit_effect(rest, effect, search.found, rest.white(search.found));
-    add(losses,
-        losses_of(minus(own.left(), own.added(search.with(fit.fitted))),
-                  minus(own.left(), own.added(search.found)), Units(own.records()), readings.base().bin_s));
+    losses.append(losses_of(minus(own.left(), own.added(search.with(fit.fitted))),
+                            minus(own.left(), own.added(search.found)), Units(own.records()),
+                            readings.base().bin_s));
   }
   return is_better(compare(losses, 0, search.seed));
 }

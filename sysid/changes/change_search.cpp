@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "base/statistics.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
@@ -101,13 +100,11 @@ std::vector<std::size_t> blocks_of(const LaterReadings& readings) {
 PairedLosses paired_losses(const LaterReadings& readings, const Eigen::VectorXd& worse,
                            const Eigen::VectorXd& better, const std::vector<bool>* rows) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
-  const std::vector<double> none(blocks.empty() ? 0 : blocks.back() + 1);
-  PairedLosses losses{none, none, none};
+  PairedLosses losses;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (i == 0 || blocks[i] != blocks[i - 1]) losses.begin_block();
     if (rows != nullptr && !(*rows)[i]) continue;
-    losses.worse[blocks[i]] += square(worse(static_cast<Eigen::Index>(i)));
-    losses.better[blocks[i]] += square(better(static_cast<Eigen::Index>(i)));
-    losses.rows[blocks[i]] += 1;
+    losses.add(worse(static_cast<Eigen::Index>(i)), better(static_cast<Eigen::Index>(i)));
   }
   return losses;
 }

@@ -9,7 +9,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/statistics.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/limits/limits.h"
 
@@ -243,13 +242,9 @@ PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& u
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::pair block{rows[i].record,
                           std::floor(static_cast<double>(rows[i].bin) * bin_s / limits::block_s)};
-    if (block != last) {
-      for (auto* const list : {&paired.worse, &paired.better, &paired.rows}) list->push_back(0);
-    }
+    if (block != last) paired.begin_block();
     last = block;
-    paired.worse.back() += square(a(static_cast<Eigen::Index>(i)));
-    paired.better.back() += square(c(static_cast<Eigen::Index>(i)));
-    paired.rows.back() += 1;
+    paired.add(a(static_cast<Eigen::Index>(i)), c(static_cast<Eigen::Index>(i)));
   }
   return paired;
 }

@@ -9,6 +9,22 @@
 
 namespace softgrip::sysid {
 
+void PairedLosses::begin_block() {
+  for (std::vector<double>* const list : {&worse, &better, &rows}) list->push_back(0);
+}
+
+void PairedLosses::add(double residual_of_worse, double residual_of_better) {
+  worse.back() += square(residual_of_worse);
+  better.back() += square(residual_of_better);
+  rows.back() += 1;
+}
+
+void PairedLosses::append(const PairedLosses& more) {
+  worse.insert(worse.end(), more.worse.begin(), more.worse.end());
+  better.insert(better.end(), more.better.begin(), more.better.end());
+  rows.insert(rows.end(), more.rows.begin(), more.rows.end());
+}
+
 Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed) {
   constexpr std::size_t draws = limits::bootstrap_draws;
   std::mt19937_64 random(seed);

@@ -16,6 +16,14 @@ namespace softgrip::sysid {
 struct PairedLosses {
   std::vector<double> worse, better;  ///< sum of squared residuals of each hypothesis in each block
   std::vector<double> rows;           ///< number of rows (residuals) in each block
+
+  /// Begins a further block, which has no rows yet.
+  void begin_block();
+  /// Adds a row to the block that was begun last.
+  /// @param residual_of_worse, residual_of_better  residuals of the two hypotheses in this row.
+  void add(double residual_of_worse, double residual_of_better);
+  /// Appends the blocks of other data.
+  void append(const PairedLosses& more);
 };
 
 struct Comparison {

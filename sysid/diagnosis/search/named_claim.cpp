@@ -89,16 +89,11 @@ PairedLosses losses_there(const std::vector<Record>& records, const std::vector<
   for (const Record& record : records) before.push_back(before.back() + record.readings);
   std::vector<std::size_t> next = before;
   for (const Block& block : divide(records, limits::block_s).blocks) {
-    double worse = 0, better = 0, rows = 0;
+    losses.begin_block();
     for (std::size_t i = block.first; i < block.last; ++i) {
       if (!std::isfinite(records[block.record].reading_mm[i]) || !required[next[block.record]++]) continue;
-      worse += without.residual_mm[block.record][i] * without.residual_mm[block.record][i];
-      better += with.residual_mm[block.record][i] * with.residual_mm[block.record][i];
-      rows += 1;
+      losses.add(without.residual_mm[block.record][i], with.residual_mm[block.record][i]);
     }
-    losses.worse.push_back(worse);
-    losses.better.push_back(better);
-    losses.rows.push_back(rows);
   }
   return losses;
 }

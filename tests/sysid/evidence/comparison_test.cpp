@@ -57,6 +57,20 @@ TEST(Comparison, BlocksAreWeightedByNumberOfRows) {
   EXPECT_LT(compare(paired, 0, 1).lower, 0.2);
 }
 
+TEST(Comparison, SquaredResidualsAreSummedInTheirBlock) {
+  PairedLosses first, second;
+  first.begin_block();
+  first.add(3, 1);
+  first.add(-4, 2);
+  second.begin_block();
+  second.begin_block();
+  second.add(1, 0);
+  first.append(second);
+  EXPECT_EQ(first.worse, (std::vector<double>{25, 0, 1}));
+  EXPECT_EQ(first.better, (std::vector<double>{5, 0, 0}));
+  EXPECT_EQ(first.rows, (std::vector<double>{2, 0, 1}));
+}
+
 TEST(Comparison, TheSameSeedGivesTheSameAnswer) {
   const PairedLosses paired = losses(0.2, 1, 12, 3);
   EXPECT_EQ(compare(paired, 0, 7).share, compare(paired, 0, 7).share);
