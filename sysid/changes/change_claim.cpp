@@ -160,9 +160,7 @@ Veto vetoed(const CauseSearch& search, const ScoredEffect& scored) {
   const FittedEffect& fitted = scored.fit.fitted;
   const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
   Claim claim;
-  claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
-                            limits::fewest_occurrences &&
-                        is_visible(search, scored, required);
+  claim.condition_met = is_met(required) && is_visible(search, scored, required);
   if (!claim.condition_met) return veto_of(claim);
   const std::vector<FittedEffect> all = search.with(fitted);
   add_sizes(claim, search, fitted);

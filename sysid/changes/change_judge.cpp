@@ -344,9 +344,7 @@ class Judge {
     judged.zero_mm = nuisance.zero_mm - base_.zero_mm;
     judged.gain_percent = 100 * nuisance.gain;
     for (const Effect& effect : effects) {
-      const std::vector<bool> required = required_rows(readings, effect.appears);
-      if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) <
-          limits::fewest_occurrences)
+      if (!is_met(required_rows(readings, effect.appears)))
         judged.not_tested.emplace(effect.id, recording_for(effect.appears));
     }
     for (TriedCause& tried : judged.tried) {

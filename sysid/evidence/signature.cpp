@@ -77,6 +77,11 @@ std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>
   return required;
 }
 
+bool is_met(const std::vector<bool>& required) {
+  return static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
+         limits::fewest_occurrences;
+}
+
 std::string_view recording_for(Appears appears) {
   switch (appears) {
     case Appears::at_rest:

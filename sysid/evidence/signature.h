@@ -38,6 +38,10 @@ struct OperatingPoint {
 /// rate. A displacement counts as large in the upper half of its range.
 [[nodiscard]] std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions);
 
+/// Returns true if a condition is met often enough for a decision (limits::fewest_occurrences).
+/// @param required  result of required_at() for the condition.
+[[nodiscard]] bool is_met(const std::vector<bool>& required);
+
 /// Returns advice for the user if the data do not meet the condition `appears`. The advice describes a
 /// recording that meets the condition.
 [[nodiscard]] std::string_view recording_for(Appears appears);

@@ -104,8 +104,7 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
              const StructureFit& without, const LeftOutLosses& left_out, std::uint64_t seed) {
   Claim claim;
   const std::vector<bool> required = required_readings(records, cause.appears, without);
-  claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
-                        limits::fewest_occurrences;
+  claim.condition_met = is_met(required);
   if (!claim.condition_met) return veto_of(claim);
   claim_size(claim, records, cause, with);
   claim.error_without = std::sqrt(without.mean_square_mm2);

@@ -45,6 +45,13 @@ TEST(Signature, RunWithoutRestHasNoSampleAtRest) {
   EXPECT_EQ(std::count(at_rest.begin(), at_rest.end(), true), 0);
 }
 
+TEST(Signature, ConditionIsMetAtFiveOperatingPoints) {
+  std::vector<bool> required{true, false, true, true, false, true};
+  EXPECT_FALSE(is_met(required));
+  required.push_back(true);
+  EXPECT_TRUE(is_met(required));
+}
+
 TEST(Signature, EveryConditionHasARecordingInstruction) {
   for (const Appears appears :
        {Appears::anywhere, Appears::at_rest, Appears::held, Appears::moving, Appears::displaced})
