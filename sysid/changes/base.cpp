@@ -262,11 +262,10 @@ Base fit_base(const std::vector<Record>& all_samples, Judged judged, Drive drive
     base.bin_s = bin_s(records, 2 * options.later_interval_s);
   }
   base.temperature_c = mean_temperature(records);
-  for (const Record& record : records) {
-    base.largest_kpa = std::max(base.largest_kpa, record.largest_kpa);
-    base.span_mm = std::max(base.span_mm, record.span_mm);
-    base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
-  }
+  const CampaignSize size = campaign_size(records);
+  base.largest_kpa = size.largest_kpa;
+  base.span_mm = size.span_mm;
+  for (const Record& record : records) base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   base.units = Units(records);
   choose(base, base_candidates(records, judged, drive, base.largest_kpa, options), records, options);
   Binned peak_rate;

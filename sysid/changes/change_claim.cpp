@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -35,17 +34,6 @@ bool predicts_worse(const CauseSearch& search, const Effect& effect) {
                             readings.base().bin_s));
   }
   return is_better(compare(losses, 0, search.seed));
-}
-
-/// Returns the largest possible size of a cause. `unit` is the unit of this size. The limit is the range of
-/// the signal on which the cause acts.
-double largest_size(const LaterReadings& readings, const std::string& unit) {
-  double length_s = 0;
-  for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
-  if (unit == "mm") return readings.base().span_mm;
-  if (unit == "kPa") return readings.base().largest_kpa;
-  if (unit == "s") return length_s;
-  return std::numeric_limits<double>::infinity();
 }
 
 /// Returns the residuals with these effects at each whitened row, without whitening. The mean of each record
@@ -114,6 +102,8 @@ std::optional<Interval> distance_from_neutral(const ShownSize& shown) {
 /// the last one that is found.
 void add_sizes(Claim& claim, const CauseSearch& search, const FittedEffect& fitted) {
   const LaterReadings& readings = search.readings;
+  const Base& base = readings.base();
+  const CampaignSize range{base.largest_kpa, base.span_mm, campaign_size(readings.records()).longest_s};
   const double deviation = readings.nuisance(search.with(fitted)).gain;
   const std::vector<FittedEffect> all = search.with(with_whole_gain(readings, fitted, deviation));
   const std::vector<EffectIntervals> intervals = intervals_of(readings, all, search.healthy, search.left_out);
@@ -125,10 +115,7 @@ void add_sizes(Claim& claim, const CauseSearch& search, const FittedEffect& fitt
       continue;
     }
     claim.size = size;
-    // The neutral value of a limit is far above all signals, so the distance from it is not compared with a
-    // range.
-    claim.largest_size = shown.neutral == 0 ? largest_size(readings, shown.size.unit)
-                                            : std::numeric_limits<double>::infinity();
+    claim.largest_size = largest_possible_size(range, shown.size.unit, shown.neutral);
   }
 }
 

@@ -94,8 +94,8 @@ FittedEffect with_whole_gain(const LaterReadings& readings, FittedEffect effect,
 
 double at_full_pressure(const LaterReadings& readings, const Binned& added) {
   const std::vector<Record>& records = readings.records();
-  double largest_kpa = 0, sum = 0, count = 0;
-  for (const Record& record : records) largest_kpa = std::max(largest_kpa, record.largest_kpa);
+  const double largest_kpa = campaign_size(records).largest_kpa;
+  double sum = 0, count = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const std::vector<double> drive = binned(records[r], records[r].drive_kpa, readings.base().bin_s);
     for (std::size_t b = 0; b < std::min(drive.size(), added[r].size()); ++b) {

@@ -113,14 +113,9 @@ class Fit {
   [[nodiscard]] double limit_of_nothing(std::size_t i) const {
     const double nothing = effect_.nothing[i];
     double reach = std::numeric_limits<double>::infinity();
-    if (effect_.numbers[i].unit == "kPa") reach = largest(&Record::largest_kpa);
-    if (effect_.numbers[i].unit == "mm") reach = largest(&Record::span_mm);
+    if (effect_.numbers[i].unit == "kPa") reach = campaign_size(readings_.records()).largest_kpa;
+    if (effect_.numbers[i].unit == "mm") reach = campaign_size(readings_.records()).span_mm;
     return std::abs(nothing) > 1.5 * reach ? reach : nothing;
-  }
-  [[nodiscard]] double largest(double Record::*of_record) const {
-    double largest = 0;
-    for (const Record& record : readings_.records()) largest = std::max(largest, record.*of_record);
-    return largest;
   }
   [[nodiscard]] Eigen::VectorXd derivative(const EffectFit& from, std::size_t k) const {
     std::vector<double> beside = from.fitted.numbers;

@@ -2,10 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
+
+double largest_possible_size(const CampaignSize& range, std::string_view unit, double neutral) {
+  if (neutral == 0 && unit == "mm") return range.span_mm;
+  if (neutral == 0 && unit == "kPa") return range.largest_kpa;
+  if (neutral == 0 && unit == "s") return range.longest_s;
+  return std::numeric_limits<double>::infinity();
+}
 
 Veto veto_of(const Claim& claim) {
   if (!claim.condition_met) return Veto::not_tested;

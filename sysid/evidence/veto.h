@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sysid/fitting/interval.h"
+#include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
 
@@ -14,9 +15,7 @@ struct Claim {
   /// 95 % interval of the size of the cause; empty: the data do not determine the size, and the conditions on
   /// the size are not tested.
   std::optional<Interval> size;
-  /// Largest possible size of the cause, in the unit of `size`. It is the span of the displacement [mm], the
-  /// largest pressure [kPa] or the length of the longest log [s]. For all other units it is infinite, so
-  /// every size is possible.
+  /// Largest possible size of the cause (largest_possible_size()), in the unit of `size`.
   double largest_size = 0;
   /// True: the sizes of all causes that were found before remain certain if the cause is added.
   bool keeps_other_sizes = true;
@@ -30,6 +29,13 @@ struct Claim {
   /// True: the cause reduces the error of those readings that meet the condition under which it acts.
   bool shown_there = true;
 };
+
+/// Returns the largest possible size of a cause, in the given unit. It is the range of the signal on which
+/// the cause acts: the span of the displacement [mm], the largest pressure [kPa] or the length of the longest
+/// log [s]. For all other units it is infinite, so every size is possible.
+/// @param neutral  value of the parameter for which the cause has no effect. The neutral value of a limit,
+/// such as a saturation, is far above all signals, so the distance from it is not compared with a range.
+[[nodiscard]] double largest_possible_size(const CampaignSize& range, std::string_view unit, double neutral);
 
 enum class Veto {
   none,

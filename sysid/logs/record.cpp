@@ -171,15 +171,13 @@ double time_unit_s(const std::vector<Record>& records) {
 
 double pressure_unit_kpa(const std::vector<Record>& records) {
   constexpr double least_of_a_finger_kpa = 20;
-  double largest_kpa = 0;
-  for (const Record& record : records) largest_kpa = std::max(largest_kpa, record.largest_kpa);
+  const double largest_kpa = campaign_size(records).largest_kpa;
   return largest_kpa > 0 ? std::min(1.0, largest_kpa / least_of_a_finger_kpa) : 1;
 }
 
 double displacement_unit_mm(const std::vector<Record>& records) {
   constexpr double smallest_of_a_finger_mm = 1, largest_of_a_finger_mm = 40;
-  double span_mm = 0;
-  for (const Record& record : records) span_mm = std::max(span_mm, record.span_mm);
+  const double span_mm = campaign_size(records).span_mm;
   if (span_mm > 0 && span_mm < smallest_of_a_finger_mm) return span_mm / smallest_of_a_finger_mm;
   return std::max(1.0, span_mm / largest_of_a_finger_mm);
 }

@@ -14,10 +14,11 @@ Scales scales_of(const std::vector<Record>& records) {
   };
   Scales s;
   s.sample_s = std::numeric_limits<double>::infinity();
+  const CampaignSize size = campaign_size(records);
+  s.span_mm = size.span_mm;
+  s.largest_kpa = size.largest_kpa;
   if (!records.empty()) s.time_unit_s = time_unit_s(records);
   for (const Record& record : records) {
-    s.span_mm = std::max(s.span_mm, record.span_mm);
-    s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
     s.campaign_s += record.length_s();
     s.sample_s = std::min(s.sample_s, record.finest_interval_s);
     s.has_temperature |= varies(record.temperature_c);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string_view>
 
 #include "model/catalogue.h"
 #include "sysid/evidence/comparison.h"
@@ -18,21 +17,6 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Returns the largest value or range of the signal with this unit over all records. Returns infinity for a
-/// unit other than mm, kPa or s.
-double range_of(const std::vector<Record>& records, std::string_view unit) {
-  double span_mm = 0, largest_kpa = 0, length_s = 0;
-  for (const Record& record : records) {
-    span_mm = std::max(span_mm, record.span_mm);
-    largest_kpa = std::max(largest_kpa, record.largest_kpa);
-    length_s = std::max(length_s, record.length_s());
-  }
-  if (unit == "mm") return span_mm;
-  if (unit == "kPa") return largest_kpa;
-  if (unit == "s") return length_s;
-  return infinity;
-}
 
 void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& cause,
                 const StructureFit& with) {
@@ -57,9 +41,7 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     farthest = distance;
     claim.size =
         Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    // The neutral value of a limit, such as a saturation, is far above all signals. The distance between the
-    // fitted limit and its neutral value is therefore not a meaningful size, and it has no upper limit here.
-    claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
+    claim.largest_size = largest_possible_size(campaign_size(records), spec.unit, spec.neutral);
   }
 }
 

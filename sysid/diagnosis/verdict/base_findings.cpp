@@ -51,8 +51,7 @@ double slowest_branch_s(const model::Model& model) {
 /// may be too fast if they compensate for a missing component. The refit may have moved a branch to the time
 /// constant of a missing slow branch.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
-  double longest_s = 0;
-  for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
+  const double longest_s = campaign_size(data.records).longest_s;
   const double slowest_s = std::min(slowest_branch_s(data.given.model), slowest_branch_s(recalibrated));
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 
 namespace softgrip::sysid::veto_test {
@@ -48,6 +49,16 @@ TEST(Veto, EachUnmetConditionRejectsTheClaim) {
   claim = sound();
   claim.shown_there = false;
   EXPECT_EQ(veto_of(claim), Veto::absent_where_required);
+}
+
+TEST(Veto, LargestSizeIsTheRangeOfTheSignalWithItsUnit) {
+  const CampaignSize range{.largest_kpa = 60, .span_mm = 20, .longest_s = 30};
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(largest_possible_size(range, "kPa", 0), 60);
+  EXPECT_EQ(largest_possible_size(range, "mm", 0), 20);
+  EXPECT_EQ(largest_possible_size(range, "s", 0), 30);
+  EXPECT_EQ(largest_possible_size(range, "%", 0), infinity);
+  EXPECT_EQ(largest_possible_size(range, "mm", 1e4), infinity) << "a limit such as a saturation";
 }
 
 TEST(Veto, UnchangedErrorIsRejectedAsNotReduced) {
