@@ -180,7 +180,7 @@ void spread(Base& base) {
     for (const double offset : binned(record, residual(record, prediction), base.bin_s))
       offsets.add(offset, offset);
     for (std::size_t b = 0; b < std::min(motion.size(), base.left[r].size()); ++b) {
-      const std::size_t unit = base.units.unit_of(r, (static_cast<double>(b) + 0.5) * base.bin_s);
+      const std::size_t unit = base.units.unit_of(r, middle_s(b, base.bin_s));
       sums[r * base.units.count() + unit].add(motion[b], base.left[r][b]);
     }
   }
@@ -231,9 +231,9 @@ Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double 
   Binned left = fitted_without.front();
   for (std::size_t r = 0; r < left.size(); ++r) {
     for (std::size_t b = 0; b < left[r].size(); ++b) {
-      const double middle_s = (static_cast<double>(b) + 0.5) * bin_s;
-      left[r][b] = middle_s > begin_s(records[r]) ? fitted_without[units.unit_of(r, middle_s)][r][b]
-                                                  : std::numeric_limits<double>::quiet_NaN();
+      const double at_s = middle_s(b, bin_s);
+      left[r][b] = at_s > begin_s(records[r]) ? fitted_without[units.unit_of(r, at_s)][r][b]
+                                              : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return left;

@@ -26,6 +26,11 @@ using Binned = std::vector<std::vector<double>>;
   return static_cast<std::size_t>((record.time_s[i] - record.time_s.front()) / bin_s + 1e-9);
 }
 
+/// Returns the time from the start of a record to the middle of a bin [s].
+[[nodiscard]] inline double middle_s(std::size_t bin, double bin_s) {
+  return (static_cast<double>(bin) + 0.5) * bin_s;
+}
+
 /// Returns the mean of the finite values in every bin.
 [[nodiscard]] std::vector<double> binned(const Record& record, const std::vector<double>& series,
                                          double bin_s);

@@ -139,9 +139,9 @@ class FilterBank {
     const std::vector<double> readings = binned(record, record.reading_mm, bin_s_);
     const Eigen::Index first = columns_.rows();
     for (std::size_t b = 0; b < readings.size(); ++b) {
-      const double middle_s = (static_cast<double>(b) + 0.5) * bin_s_;
-      if (std::isfinite(readings[b]) && middle_s > begin_s(record))
-        rows_.push_back({r, b, units.unit_of(r, middle_s)});
+      const double at_s = middle_s(b, bin_s_);
+      if (std::isfinite(readings[b]) && at_s > begin_s(record))
+        rows_.push_back({r, b, units.unit_of(r, at_s)});
     }
     // Each record gets an additional column for its zero offset.
     const auto count = static_cast<Eigen::Index>(rows_.size());
@@ -227,7 +227,7 @@ PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& u
   for (std::size_t r = 0; r < worse.size(); ++r) {
     for (std::size_t b = 0; b < worse[r].size(); ++b) {
       if (!std::isfinite(worse[r][b]) || !std::isfinite(better[r][b])) continue;
-      rows.push_back({r, b, units.unit_of(r, (static_cast<double>(b) + 0.5) * bin_s)});
+      rows.push_back({r, b, units.unit_of(r, middle_s(b, bin_s))});
       first.push_back(worse[r][b]);
       second.push_back(better[r][b]);
     }

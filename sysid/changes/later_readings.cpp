@@ -26,8 +26,7 @@ bool begins_as_a_healthy_one(const Base& base, const Record& record) {
 
 std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
   std::vector<double> series(bins);
-  for (std::size_t b = 0; b < bins; ++b)
-    series[b] = std::exp(-(static_cast<double>(b) + 0.5) * bin_s / lag_s);
+  for (std::size_t b = 0; b < bins; ++b) series[b] = std::exp(-middle_s(b, bin_s) / lag_s);
   return series;
 }
 
@@ -111,8 +110,7 @@ LaterReadings LaterReadings::part(Keep keep) const {
   for (std::size_t r = 0; r < later_.size(); ++r) {
     std::vector<double> kept = left_[r];
     for (std::size_t b = 0; b < kept.size(); ++b) {
-      if (!keep(r, (static_cast<double>(b) + 0.5) * base_.bin_s))
-        kept[b] = std::numeric_limits<double>::quiet_NaN();
+      if (!keep(r, middle_s(b, base_.bin_s))) kept[b] = std::numeric_limits<double>::quiet_NaN();
     }
     if (std::none_of(kept.begin(), kept.end(), [](double v) { return std::isfinite(v); })) continue;
     later.push_back(later_[r]);
