@@ -161,6 +161,10 @@ ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
 
 }  // namespace
 
+bool ChangeCause::lists(std::string_view any_id) const {
+  return id == any_id || std::count(alternatives.begin(), alternatives.end(), any_id) > 0;
+}
+
 double share_explained(const JudgedChange& judged) {
   const double excess_mm2 = square(judged.later_mm) - square(judged.healthy_mm);
   const double excess_loss = judged.loss_before - 1;

@@ -58,6 +58,9 @@ struct ChangeCause {
   std::optional<Interval> gain_interval;  ///< 95 % interval of `gain`; empty for a cause without a fit
   std::vector<std::string> alternatives;  ///< ids of other causes that explain the later readings as well as
                                           ///< this cause
+
+  /// Returns true if this is the id of the cause or of one of its alternatives.
+  [[nodiscard]] bool lists(std::string_view any_id) const;
 };
 
 /// A cause that was tested as an explanation of the change. If it was rejected, `rejected` states the reason.
@@ -106,10 +109,6 @@ struct JudgedChange {
   /// Fitted deviation of the gain from the gain in the healthy logs [%]. It is within the spread of the
   /// healthy logs, so it does not count as a change.
   double gain_percent = 0;
-  /// Share of the excess error that all causes together explain, 0 .. 1. The excess error is the increase of
-  /// the squared error since the healthy logs. The share is the larger one of two shares: without and with
-  /// whitening.
-  double explained_share = 0;
   /// True if the causes leave an error that no further healthy run is expected to have, or if the causes
   /// explain less than half of the excess error.
   bool left_over = false;
@@ -128,7 +127,9 @@ struct JudgedChange {
   Binned left, explained;
 };
 
-/// Computes JudgedChange::explained_share from the other values of the result.
+/// Returns the share of the excess error that all causes together explain, 0 .. 1. The excess error is the
+/// increase of the squared error since the healthy logs. The share is the larger one of two shares: without
+/// and with whitening.
 [[nodiscard]] double share_explained(const JudgedChange& judged);
 
 struct ChangeDiagnosis {

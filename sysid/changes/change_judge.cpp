@@ -131,10 +131,10 @@ class Judge {
       white = readings.white(found);
       judged.loss_left = per_bin(readings, white);
     }
-    accept_named(diagnosis.causes, judged);
+    reject_listed(diagnosis.causes, "", judged);
     add_sizes(readings, left_out, found, diagnosis.causes);
     finish(readings, effects, found, judged);
-    if (!found.empty() && judged.unusual_log.empty() && judged.explained_share < limits::majority_share)
+    if (!found.empty() && judged.unusual_log.empty() && share_explained(judged) < limits::majority_share)
       leave_unnamed(diagnosis, judged);
     if (base_.judged == Judged::displacement && found.empty() && has_unusual_gain(judged))
       diagnosis.warnings.push_back(unusual_gain(
@@ -164,15 +164,13 @@ class Judge {
     base_.gain_per_c = own.numbers.front();
   }
 
-  /// Removes the reasons for a rejection from the causes that are named or listed as alternatives. Each
-  /// search tries all causes, so a cause can be rejected before or after the search that names it.
-  void accept_named(const std::vector<ChangeCause>& causes, JudgedChange& judged) const {
+  /// Replaces the reasons for a rejection of the causes that are named or listed as alternatives. Each search
+  /// tries all causes, so a cause can be rejected before or after the search that names it.
+  void reject_listed(std::span<const ChangeCause> causes, std::string_view reason,
+                     JudgedChange& judged) const {
     for (const ChangeCause& cause : causes) {
-      if (cause.judged != base_.judged) continue;
       for (TriedCause& tried : judged.tried) {
-        if (tried.id == cause.id ||
-            std::count(cause.alternatives.begin(), cause.alternatives.end(), tried.id) > 0)
-          tried.rejected.clear();
+        if (cause.judged == base_.judged && cause.lists(tried.id)) tried.rejected = reason;
       }
     }
   }
@@ -260,10 +258,7 @@ class Judge {
       if (vetoes[i] == Veto::not_tested) judged.not_tested.emplace(effect.id, recording_for(effect.appears));
       if (vetoes[i] == Veto::none || vetoes[i] == Veto::not_tested) cause.alternatives.push_back(effect.id);
     }
-    const auto contains = [&](std::string_view id) {
-      return cause.id == id || std::count(cause.alternatives.begin(), cause.alternatives.end(), id) > 0;
-    };
-    if (contains(causes::Ageing::WithTime::id) && !contains(payload.id) &&
+    if (cause.lists(causes::Ageing::WithTime::id) && !cause.lists(payload.id) &&
         is_another_zero(readings.nuisance(search.with(best)).zero_mm))
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
@@ -308,13 +303,7 @@ class Judge {
         diagnosis.causes.begin(), diagnosis.causes.end(), [&](const ChangeCause& cause) {
           return cause.judged != base_.judged || cause.fitted.effect.id.empty();
         });
-    for (auto cause = named; cause != diagnosis.causes.end(); ++cause) {
-      for (TriedCause& tried : judged.tried) {
-        if (tried.id == cause->id ||
-            std::count(cause->alternatives.begin(), cause->alternatives.end(), tried.id) > 0)
-          tried.rejected = explains_less_than_half;
-      }
-    }
+    reject_listed({named, diagnosis.causes.end()}, explains_less_than_half, judged);
     std::move(named, diagnosis.causes.end(), std::back_inserter(diagnosis.partial));
     diagnosis.causes.erase(named, diagnosis.causes.end());
     judged.left_over = true;
@@ -328,7 +317,6 @@ class Judge {
       judged.unusual_log = decisive_record(readings, found);
       judged.left_over = judged.unusual_log.empty();
     }
-    judged.explained_share = share_explained(judged);
     judged.bin_s = base_.bin_s;
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
     judged.left = readings.left();

@@ -141,7 +141,7 @@ std::string partial_sentences(const ChangeDiagnosis& diagnosis) {
       if (cause.judged == judged.judged) causes += (causes.empty() ? "" : "; and ") + named(cause);
     }
     if (!causes.empty())
-      text += " The following explanation accounts for only " + fixed(100 * judged.explained_share, 0) +
+      text += " The following explanation accounts for only " + fixed(100 * share_explained(judged), 0) +
               " % of the additional error of the " + name_of(judged.judged) +
               ", so it is not reported as the cause: " + causes + ".";
   }
@@ -180,7 +180,7 @@ Figure residual_figure(const JudgedChange& judged, bool explained) {
     before.label = "baseline model";
     before.colour = Colour::error;
     for (std::size_t b = 0; b < judged.left[r].size(); ++b) {
-      before.x.push_back((static_cast<double>(b) + 0.5) * judged.bin_s);
+      before.x.push_back(middle_s(b, judged.bin_s));
       before.y.push_back(judged.left[r][b]);
     }
     Series after;
@@ -284,7 +284,7 @@ Fields fields_of(const JudgedChange& judged) {
       {"later_rms", "error of the later logs", number(judged.later_mm, 3, unit)},
       {"explained_rms", "error with the causes", number(judged.explained_mm, 3, unit)},
       {"explained_percent", "share of the excess error that the causes explain [%]",
-       decimals(100 * judged.explained_share, 0)},
+       decimals(100 * share_explained(judged), 0)},
       {"whitened_loss", loss},
       {"misfit", loss},
       {"unexplained", judged.left_over},

@@ -80,10 +80,10 @@ TEST_F(ChangeJudge, ACauseOfLessThanHalfOfTheChangeIsAPartialCause) {
     const JudgedChange& judged = diagnosis.readings.front();
     const auto& named = height_kpa > 0 ? diagnosis.partial : diagnosis.causes;
     const auto& others = height_kpa > 0 ? diagnosis.causes : diagnosis.partial;
-    ASSERT_EQ(named.size(), 1U) << height_kpa << ' ' << judged.explained_share << change_sentence(diagnosis);
+    ASSERT_EQ(named.size(), 1U) << height_kpa << ' ' << share_explained(judged) << change_sentence(diagnosis);
     EXPECT_TRUE(others.empty());
     EXPECT_EQ(named.front().id, "transport_delay");
-    EXPECT_EQ(judged.explained_share<0.5, height_kpa> 0) << judged.explained_share;
+    EXPECT_EQ(share_explained(judged) < 0.5, height_kpa > 0) << share_explained(judged);
     EXPECT_EQ(judged.left_over, height_kpa > 0);
     const auto tried = std::ranges::find(judged.tried, "transport_delay", &TriedCause::id);
     ASSERT_NE(tried, judged.tried.end());

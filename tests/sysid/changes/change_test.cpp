@@ -493,7 +493,7 @@ TEST(ChangeResult, ExplainedShareIsTheLargerOneOfTwoShares) {
 TEST(ChangeResult, PartialCausesAreStatedAfterTheVerdict) {
   ChangeDiagnosis d;
   d.verdict = ChangeVerdict::unexplained;
-  d.readings.emplace_back().explained_share = 0.36;
+  d.readings.push_back(judged_with(3, std::sqrt(6.12), 5, 5));
   ChangeCause& cause = d.partial.emplace_back();
   cause.id = "valve_lag";
   cause.size = {"increase of the lag of the valve", 0.03, "s"};
