@@ -19,8 +19,8 @@ Cause public_cause(const sysid::NamedCause& named) {
   Cause cause;
   cause.id = named.cause.id;
   cause.title = named.cause.title;
-  cause.error_reduction_percent = named.heldout_gain_percent.value;
-  cause.error_reduction_ci95 = {named.heldout_gain_percent.lower, named.heldout_gain_percent.upper};
+  cause.error_reduction_percent = named.gain_percent.value;
+  cause.error_reduction_ci95 = {named.gain_percent.lower, named.gain_percent.upper};
   for (const sysid::CauseParameter& parameter : named.parameters) {
     Estimate estimate{parameter.name, parameter.unit, parameter.value, {}, true, {}};
     if (parameter.has_interval) estimate.ci95 = Interval{parameter.ci95.lower, parameter.ci95.upper};

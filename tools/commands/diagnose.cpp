@@ -73,9 +73,8 @@ Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOption
 
 void print_cause(const sysid::NamedCause& named) {
   std::printf("  %-26s held-out error reduction %s %% (95 %%: %s to %s)\n",
-              std::string(named.cause.id).c_str(), fixed(named.heldout_gain_percent.value, 1).c_str(),
-              fixed(named.heldout_gain_percent.lower, 1).c_str(),
-              fixed(named.heldout_gain_percent.upper, 1).c_str());
+              std::string(named.cause.id).c_str(), fixed(named.gain_percent.value, 1).c_str(),
+              fixed(named.gain_percent.lower, 1).c_str(), fixed(named.gain_percent.upper, 1).c_str());
   std::size_t undetermined = 0;
   for (const sysid::CauseParameter& p : named.parameters) {
     // If a cause has many parameters, print only those that the logs determine.

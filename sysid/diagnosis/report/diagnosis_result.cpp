@@ -20,8 +20,8 @@ Fields fields_of_cause(const NamedCause& named, const Budget& budget) {
                 {"form", model::catalogue()[named.block_type].info.id},
                 {"station", model::name_of(named.cause.station)},
                 {"parameters", std::move(parameters)},
-                {"heldout_error_reduction_percent", spread_value(named.heldout_gain_percent)},
-                {"heldout_gain_percent", spread_value(named.heldout_gain_percent)},  // this key is deprecated
+                {"heldout_error_reduction_percent", spread_value(named.gain_percent)},
+                {"heldout_gain_percent", spread_value(named.gain_percent)},  // this key is deprecated
                 {"inclusion", named.inclusion},
                 {"share_percent", budget.share_percent(named)}};
   if (named.gain_kpa2) {

@@ -43,7 +43,7 @@ const Spread* gain_of(const NamedCause& named, const Cause& alternative) {
 std::vector<Row> rows_of(const Diagnosis& d) {
   std::vector<Row> rows;
   for (const NamedCause* named : shown_causes(d)) {
-    rows.push_back({std::string(named->cause.title), false, &named->heldout_gain_percent, named->inclusion});
+    rows.push_back({std::string(named->cause.title), false, &named->gain_percent, named->inclusion});
     for (const Cause& alternative : named->alternatives)
       rows.push_back({"or " + alternative_title(alternative, d.causes), true, gain_of(*named, alternative)});
   }

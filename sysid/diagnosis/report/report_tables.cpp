@@ -174,7 +174,7 @@ std::vector<const NamedCause*> shown_causes(const Diagnosis& d) {
   std::vector<const NamedCause*> causes;
   for (const NamedCause& named : d.causes) causes.push_back(&named);
   for (const NamedCause& named : d.partial) {
-    if (named.heldout_gain_percent.lower > 0) causes.push_back(&named);
+    if (named.gain_percent.lower > 0) causes.push_back(&named);
   }
   return causes;
 }

@@ -22,8 +22,7 @@ Table parts_table(const ValveFindings& in_valve) {
     std::string title(named.cause.title);
     for (const Cause& alternative : named.alternatives)
       title += " or " + alternative_title(alternative, in_valve.named);
-    for (const CauseParameter& p : named.parameters)
-      rows.push_back(row_of(title, p, named.heldout_gain_percent));
+    for (const CauseParameter& p : named.parameters) rows.push_back(row_of(title, p, named.gain_percent));
   }
   return result::table_of("Causes between command and measured pressure", row_of("", {}, {}), rows);
 }

@@ -24,12 +24,8 @@ bool has_free_form(const model::Model& model, const Cause& cause) {
 
 ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
                   const std::vector<ScoredCandidate>& scored) {
-  ChosenCause chosen;
-  chosen.cause = cause;
-  chosen.gain_percent = gain_percent(between.without_losses, between.with_losses, between.seed);
+  ChosenCause chosen = chosen_cause(cause, between.without_losses, between.with_losses, between.seed);
   const double gained = square(rmse_mm(between.without_losses)) - square(rmse_mm(between.with_losses));
-  chosen.gain_mm2 = mean_difference(between.without_losses, between.with_losses, between.seed);
-  chosen.inclusion = winning_share(between.with_losses, between.without_losses, between.seed);
   const auto indistinguishable = indistinguishable_from(cause, between.with.point.model);
   if (indistinguishable) chosen.alternatives.push_back(*indistinguishable);
   for (const ScoredCandidate& s : scored) {

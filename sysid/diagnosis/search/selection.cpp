@@ -266,6 +266,16 @@ class Selector {
 
 }  // namespace
 
+ChosenCause chosen_cause(const Cause& cause, const BlockLosses& without, const BlockLosses& with,
+                         std::uint64_t seed) {
+  return {cause,
+          gain_percent(without, with, seed),
+          mean_difference(without, with, seed),
+          winning_share(with, without, seed),
+          {},
+          {}};
+}
+
 Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm) {
   Selection selection;
   selection.base_unexplained = selection.left = unexplained_error_of(base.residual_mm, noise_mm);

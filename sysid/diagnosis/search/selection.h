@@ -27,18 +27,23 @@ struct CandidateScore {
 /// One of the causes that a search has selected.
 struct ChosenCause {
   Cause cause;
-  /// Causes that explain the data as well as this cause, or that no command separates from this cause.
-  std::vector<Cause> alternatives;
   /// Held-out error reduction by this cause if all other selected causes are present.
   Spread gain_percent;
-  /// Candidates that were tested in place of this cause. The best one comes first.
-  std::vector<CandidateScore> candidates;
   Spread gain_mm2;  ///< reduction of the held-out mean square by this cause
   /// Bootstrap inclusion frequency of this cause. It is the share of the bootstrap samples of blocks in which
   /// the structure with this cause has a lower loss than the best structure without it. Two indistinguishable
   /// causes have equal losses, so each of them gets half of the share.
-  double inclusion = 0;
+  double inclusion = 1;
+  /// Causes that explain the data as well as this cause, or that no command separates from this cause.
+  std::vector<Cause> alternatives;
+  /// Candidates that were tested in place of this cause. The best one comes first.
+  std::vector<CandidateScore> candidates;
 };
+
+/// Returns a cause without alternatives and candidates, with its error reductions on held-out blocks.
+/// @param without, with  losses of the structure without and with the cause.
+[[nodiscard]] ChosenCause chosen_cause(const Cause& cause, const BlockLosses& without,
+                                       const BlockLosses& with, std::uint64_t seed);
 
 /// The selected structure and the evidence for each selected cause.
 struct Selection {

@@ -140,9 +140,7 @@ std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, con
         found.fit.mean_square_mm2 > (1 - rest_stays) * before_mm2)
       break;
   }
-  const Band band = band_of_jumps(distances);
-  found.band_kpa = band.value_kpa;
-  found.band_ci95 = band.ci95_kpa;
+  static_cast<Band&>(found) = band_of_jumps(distances);
   return found;
 }
 
@@ -342,19 +340,10 @@ std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& dat
   Selection beyond = select_causes(driven, std::move(base), noise_mm, division, behind);
 
   StickSlipSelection result;
-  result.evidence = {found->band_kpa,
-                     found->band_ci95,
-                     found->jumps,
-                     found->scatter,
-                     rmse_mm(beyond.extended_losses),
+  result.evidence = {*found, rmse_mm(beyond.extended_losses),
                      gain_percent(plain.base_losses, beyond.extended_losses, options.seed)};
   result.selection = plain;
-  result.selection.chosen = {{dead_band,
-                              {},
-                              gain_percent(plain.base_losses, beyond.base_losses, options.seed),
-                              {},
-                              mean_difference(plain.base_losses, beyond.base_losses, options.seed),
-                              winning_share(beyond.base_losses, plain.base_losses, options.seed)}};
+  result.selection.chosen = {chosen_cause(dead_band, plain.base_losses, beyond.base_losses, options.seed)};
   for (ChosenCause& more : beyond.chosen) result.selection.chosen.push_back(std::move(more));
   result.selection.left = beyond.left;
   extend(result.selection, data, beyond.extended, dead_band, found->band_kpa, division);

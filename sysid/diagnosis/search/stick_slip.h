@@ -21,12 +21,20 @@
 
 namespace softgrip::sysid {
 
-/// A stick-slip motion that was detected.
-struct StickSlip {
+/// Width of a dead band with its 95 % interval [kPa].
+struct Band {
   double band_kpa = 0;
   Interval band_ci95;
-  std::size_t jumps = 0;        ///< number of jumps whose jump distance the readings resolve
-  double scatter = 0;           ///< standard deviation of the jump distances, divided by their mean
+};
+
+/// Dead band of a valve and the jumps from whose distances it was estimated.
+struct JumpingBand : Band {
+  std::size_t jumps = 0;  ///< number of jumps whose jump distance the readings resolve
+  double scatter = 0;     ///< standard deviation of the jump distances, divided by their mean
+};
+
+/// A stick-slip motion that was detected.
+struct StickSlip : JumpingBand {
   std::vector<Record> records;  ///< records with the valve position as drive
   StructureFit fit;             ///< model behind the valve, fitted to `records`
 };
@@ -37,12 +45,6 @@ struct StickSlip {
 inline constexpr double most_scatter = 0.1, most_scatter_in_all = 0.13;
 /// Scatter of random jump distances, which are uniformly distributed between the limits of the tracker.
 inline constexpr double scatter_of_chance = 0.19;
-
-/// Width of a dead band with its 95 % interval [kPa].
-struct Band {
-  double value_kpa = 0;
-  Interval ci95_kpa;
-};
 
 /// Returns the dead band of a valve from sorted jump distances. At least limits::fewest_events distances are
 /// required. If a jump is detected wrongly, its distance is usually too short. Therefore the band is the mean
@@ -63,11 +65,7 @@ struct Band {
                                                           double noise_mm, unsigned threads);
 
 /// Parameters of a stick-slip motion, and the error reduction by this motion.
-struct StickSlipEvidence {
-  double band_kpa = 0;
-  Interval band_ci95;
-  std::size_t jumps = 0;       ///< number of jumps from whose distances the band was estimated
-  double scatter = 0;          ///< standard deviation of the jump distances, divided by their mean
+struct StickSlipEvidence : JumpingBand {
   double heldout_rmse_mm = 0;  ///< held-out RMSE if the times of the jumps are determined from the readings
   /// Held-out error reduction by the stick-slip motion and the causes behind the valve, compared with the
   /// refitted model.

@@ -99,9 +99,11 @@ class Labeller {
         at_(uncertain_point(data.records, point, space_)) {}
 
   [[nodiscard]] NamedCause name(const FindingName& finding, const StructureTrial& without) const {
-    NamedCause named;
-    named.cause = *find_cause(finding.id);
-    named.block_type = finding.block(chosen_.structure, question_.drive);
+    NamedCause named{chosen_cause(*find_cause(finding.id), without.block_losses_mm2, chosen_.block_losses_mm2,
+                                  question_.seed),
+                     finding.block(chosen_.structure, question_.drive),
+                     {},
+                     {}};
     if (!finding.alternative.empty()) named.alternatives.push_back(*find_cause(finding.alternative));
     if (finding.ingredient == Ingredient::play_operators && stands_still_)
       named.alternatives.push_back(*find_cause(causes::Backlash::id));
@@ -112,10 +114,6 @@ class Labeller {
     // a lag.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
       named.alternatives.push_back(*find_cause(causes::ValveLag::id));
-    named.heldout_gain_percent =
-        gain_percent(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
-    named.gain_mm2 = mean_difference(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
-    named.inclusion = winning_share(chosen_.block_losses_mm2, without.block_losses_mm2, question_.seed);
     named.parameters = block_numbers(at_, named.block_type);
     return named;
   }

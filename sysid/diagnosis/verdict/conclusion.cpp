@@ -118,7 +118,7 @@ std::vector<NamedCause> Conclusion::found_in_readings() const {
     lead.cause = *find_cause(causes::ClockOffset::id);
     lead.block_type = lead.cause.forms.front().type;
     lead.parameters = {{"lead_s", "s", d_.lead->lead_s, d_.lead->ci95, true}};
-    lead.heldout_gain_percent = gain_percent(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
+    lead.gain_percent = gain_percent(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
     lead.gain_mm2 = mean_difference(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
     named.push_back(std::move(lead));
   }

@@ -84,16 +84,8 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
   const FitSpace space = structure_space(records, model, extended.causes);
   const UncertainPoint at = uncertain_point(records, extended.point, space);
   for (const ChosenCause& each : chosen) {
-    NamedCause named;
-    named.cause = each.cause;
-    named.block_type = model.blocks[*position_of(model, each.cause)].type;
-    named.parameters = block_numbers(at, named.block_type);
-    named.heldout_gain_percent = each.gain_percent;
-    named.gain_mm2 = each.gain_mm2;
-    named.inclusion = each.inclusion;
-    named.alternatives = each.alternatives;
-    named.candidates = each.candidates;
-    list.push_back(std::move(named));
+    const std::size_t type = model.blocks[*position_of(model, each.cause)].type;
+    list.push_back({each, type, block_numbers(at, type), {}});
   }
   return list;
 }
@@ -112,7 +104,7 @@ NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> pa
   const double with = std::sqrt(noise_mm * noise_mm + excess_mm * excess_mm);
   const double gain = 100 * (1 - noise_mm / with);
   const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, readings)));
-  named.heldout_gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
+  named.gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
   return named;
 }
 

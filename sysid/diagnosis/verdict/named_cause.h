@@ -30,19 +30,12 @@ struct CauseParameter {
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
-struct NamedCause {
-  Cause cause;
+struct NamedCause : ChosenCause {
   std::size_t block_type = 0;  ///< type of the block that represents the cause in the model
   std::vector<CauseParameter> parameters;
-  Spread heldout_gain_percent;
-  Spread gain_mm2;  ///< reduction of the held-out mean square by the cause
   /// Reduction of the mean square error of the measured pressure [kPa^2]. Not set: the cause was not found in
   /// the measured pressure.
   std::optional<Spread> gain_kpa2;
-  double inclusion = 1;  ///< inclusion frequency: share of the bootstrap samples in which structures with
-                         ///< this cause have the lower loss
-  std::vector<Cause> alternatives;
-  std::vector<CandidateScore> candidates;
 };
 
 /// A fitted point and the covariance of its fitted parameters.

@@ -293,7 +293,7 @@ class Search {
     NamedCause named;
     named.cause = *find_cause(name.id);
     named.block_type = name.block();
-    named.heldout_gain_percent = of.gain_percent;
+    named.gain_percent = of.gain_percent;
     named.gain_kpa2 = of.gain_kpa2;
     named.inclusion = of.inclusion;
     return named;

@@ -18,7 +18,7 @@ struct ValveFindings {
   /// Causes between the command and the measured pressure. The list is empty if the valve model does not
   /// describe the measured pressure. Causes that the given model already contains are left out. A leak has a
   /// scale error as its alternative, and a dead time may have a lag as its alternative. The error reductions
-  /// refer to the measured pressure (gain_kpa2, heldout_gain_percent); gain_mm2 is 0.
+  /// refer to the measured pressure (gain_kpa2, gain_percent); gain_mm2 is 0.
   std::vector<NamedCause> named;
   std::string advice;  ///< advice on how to separate a named leak from a scale error; empty: no leak is named
   ValveStage stage;    ///< fitted valve model: dead time, lag, and the parts for the named causes

@@ -63,8 +63,8 @@ void expect_found(const Diagnosis& d, const std::string& id) {
   EXPECT_TRUE(model::position_of(d.extended_model, id));
   ASSERT_EQ(d.extended.causes.size(), 1U);
   EXPECT_EQ(d.extended.causes[0].id, id);
-  EXPECT_GT(d.causes[0].heldout_gain_percent.lower, 0);
-  EXPECT_NEAR(d.causes[0].heldout_gain_percent.value, d.gain.value, 1);
+  EXPECT_GT(d.causes[0].gain_percent.lower, 0);
+  EXPECT_NEAR(d.causes[0].gain_percent.value, d.gain.value, 1);
   EXPECT_LT(d.extended_rmse_mm, d.recalibrated_rmse_mm);
 }
 

@@ -33,7 +33,7 @@ NamedCause named(const char* id, double gain_mm2) {
   cause.cause = *find_cause(id);
   cause.block_type = *model::find_block(id);
   cause.parameters = {{"time_constant_s", "s", 0.08, {0.07, 0.09}, true}};
-  cause.heldout_gain_percent = {40, 5, 30, 50};
+  cause.gain_percent = {40, 5, 30, 50};
   cause.gain_mm2 = {gain_mm2, 0.001, 0.9 * gain_mm2, 1.1 * gain_mm2};
   cause.inclusion = 0.97;
   return cause;
@@ -152,7 +152,7 @@ TEST_F(ReportTest, ForestPlotHasARowPerCauseAndAlternative) {
 TEST_F(ReportTest, InsignificantPartialCauseIsNotInTheForestPlot) {
   diagnosis.causes.clear();
   diagnosis.partial = {named("valve_lag", 0.02), named("transport_delay", 0.01)};
-  diagnosis.partial.back().heldout_gain_percent = {7, 10, -8, 36};
+  diagnosis.partial.back().gain_percent = {7, 10, -8, 36};
   EXPECT_EQ(forest_figure(diagnosis).drawing->rows.size(), 1U);
   EXPECT_EQ(cause_parameter_table(diagnosis, 6).rows.size(), 1U);
   diagnosis.partial.erase(diagnosis.partial.begin());

@@ -20,7 +20,7 @@ ValveFindings dead_band_found() {
   named.cause = *find_cause(causes::ValveDeadband::id);
   named.block_type = model::block_type<model::ValveDeadband>();
   named.parameters.push_back({"band_kpa", "kPa", 1.25, {1.125, 1.375}, true});
-  named.heldout_gain_percent = {31, 3, 25, 37};
+  named.gain_percent = {31, 3, 25, 37};
   named.gain_kpa2 = Spread{0.45, 0.1, 0.25, 0.65};
   ValveFindings found;
   found.named.push_back(named);
@@ -63,7 +63,7 @@ TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
                             {"at_bound", "a sentence", 0, 0}};
   d.stick_slip->gain_percent = d.gain = {12, 3, 10, 14};
   d.base = "two creep branches";
-  d.causes.emplace_back().heldout_gain_percent = {40, 5, 30, 50};
+  d.causes.emplace_back().gain_percent = {40, 5, 30, 50};
   d.causes.back().cause = *find_cause("stress_softening");
   d.causes.back().block_type = model::block_type<model::StressSoftening>();
   d.causes.back().parameters = {

@@ -153,7 +153,7 @@ std::vector<double> partly_short(std::uint64_t seed) {
 TEST(StickSlip, ShortJumpsDoNotBiasTheStickBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).band_kpa;
   // 20 % of the distances are too short, but they must not change the estimate of the band. The mean of the
   // central 90 % of the distances would be too small by 2.3 %.
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
@@ -168,7 +168,7 @@ TEST(StickSlip, BandIntervalCoversTheTrueBandIn95Percent) {
     std::vector<double> distances_kpa(60);
     for (double& d : distances_kpa) d = read(random);
     std::ranges::sort(distances_kpa);
-    const Interval interval = band_of_jumps(distances_kpa).ci95_kpa;
+    const Interval interval = band_of_jumps(distances_kpa).band_ci95;
     held += interval.lower < 1.0 && 1.0 < interval.upper ? 1 : 0;
   }
   EXPECT_NEAR(held, 0.95 * seeds, 0.02 * seeds);

@@ -141,7 +141,7 @@ TEST(Diagnosis, ReadingAheadOfTheCommandIsAClockOffset) {
   EXPECT_NEAR(named.parameters.at(0).value, 7 * 0.02, 0.004);
   EXPECT_LE(named.parameters[0].ci95.lower, 7 * 0.02);
   EXPECT_GE(named.parameters[0].ci95.upper, 7 * 0.02);
-  EXPECT_GT(named.heldout_gain_percent.lower, 0);
+  EXPECT_GT(named.gain_percent.lower, 0);
   EXPECT_LT(diagnosis->extended_rmse_mm, 1.05 * noise_mm);
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }

@@ -147,7 +147,7 @@ Named delay_of(SignalName signal, const model::Model& twin) {
   selection.extended = *fit_candidates(data, base, {.only = {delay}}).front().fit;
   selection.extended_losses = held_out_losses(data.records, division, selection.extended);
   selection.undecided = fit_confounded(data, selection.extended, division);
-  selection.chosen.push_back({delay, {}, {}, {}, {}, 1});
+  selection.chosen.push_back({delay, {}, {}, 1, {}, {}});
   Named named{name_chosen(data.records, selection.extended, selection.chosen), {}, {}};
   if (named.causes.empty()) return named;
   named.alone = named.causes.front().parameters.front().ci95;
