@@ -57,7 +57,8 @@ std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>
     for (const Log& log : logs) sum += log.size();
     return sum;
   };
-  constexpr std::size_t fewest = 400;
+  // A single log is divided into two halves.
+  constexpr std::size_t fewest = 2 * limits::fewest_readings;
   if (samples(healthy) < fewest || samples(later) < fewest)
     return "The diagnosis of a change requires " + std::to_string(fewest) +
            " samples of healthy logs and as many samples of later logs";

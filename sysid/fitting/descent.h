@@ -60,7 +60,7 @@ struct Descent {
 /// Throws WorkCancelled if the computation is cancelled.
 template <class Problem, class Point>
 [[nodiscard]] Descent<Point> descend(Problem& problem, Point start, const DescentOptions& options) {
-  constexpr double more_damping = 6, less_damping = 1.0 / 6, weakest_damping = 1e-10;
+  constexpr double more_damping = 6, less_damping = 1 / more_damping, weakest_damping = 1e-10;
   Descent<Point> descent{std::move(start)};
   double damping = options.damping;
   double loss = problem.loss(descent.point);

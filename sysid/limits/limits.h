@@ -48,6 +48,9 @@ inline constexpr std::size_t fewest_events = 20;
 /// condition of a cause is met. With fewer occurrences, single noisy samples could determine the decision.
 inline constexpr std::size_t fewest_occurrences = 5;
 
+/// Smallest number of readings from which a cause can be separated from noise.
+inline constexpr std::size_t fewest_readings = 200;
+
 /// Smallest number of values from which a correlation coefficient is estimated. With 15 values and no
 /// correlation, its standard error is 0.27.
 inline constexpr std::size_t fewest_for_correlation = 15;
@@ -71,6 +74,9 @@ inline constexpr double unfamiliar_factor = 1 + equal_error_share;
 /// Smallest share of the remaining error that a hypothesis must explain; below this share, it does not count
 /// as an explanation.
 inline constexpr double least_explained_share = 0.2;
+/// Smallest share of the mean square that further parameters must explain if they only refine the equation of
+/// a cause. They are not reported as a cause, so the limit is lower than `least_explained_share`.
+inline constexpr double least_refinement_share = 0.02;
 /// Smallest share that counts as the larger part of a quantity, for example of an error that a hypothesis
 /// explains.
 inline constexpr double majority_share = 0.5;

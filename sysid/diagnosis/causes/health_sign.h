@@ -21,7 +21,7 @@ enum class HealthNumber : std::uint8_t {
   contact,        ///< reading at which the finger touches the object
   time_to_grip,   ///< time from the first step of the sequence to the result HOLDING
 };
-inline constexpr std::size_t health_numbers = 9;
+inline constexpr std::size_t health_numbers = static_cast<std::size_t>(HealthNumber::time_to_grip) + 1;
 
 struct HealthNumberInfo {
   std::string_view id;     ///< key of the indicator in JSON; the key includes the unit

@@ -31,6 +31,10 @@ struct FitEffort {
                              ///< of the fit
 };
 
+/// Damping of a Gauss-Newton step of a linearised structure, as a share of the diagonal elements of the
+/// normal matrix. The damping limits steps in directions that the data hardly determine.
+inline constexpr double step_damping = 1e-3;
+
 /// Returns the indices of the parameters that a fit of this structure changes. The indices refer to the list
 /// of all parameters. In the base structure, the exponents and fixed values are not changed. k0 is not
 /// changed if the hysteresis has an instantaneous gain. In the blocks of causes, the forms of the causes

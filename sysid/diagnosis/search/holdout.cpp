@@ -19,9 +19,6 @@ namespace {
 /// then start at an arbitrary state.
 constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6, .hold_starts = true};
 
-/// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix.
-constexpr double block_damping = 1e-3;
-
 /// Ranges of Jacobian rows that belong to a block. The rows `first` to `last` are the readings in the block.
 /// The rows `hidden_first` to `hidden_last` are the readings that are excluded from the fit. The excluded
 /// readings include some readings near the block.
@@ -110,7 +107,7 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
       normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose(), -1);
       right -= part.transpose() * r.segment(from, length);
     }
-    normal.diagonal() += block_damping * whole.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
+    normal.diagonal() += step_damping * whole.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
     const Eigen::VectorXd step = -normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;

@@ -14,9 +14,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix. The damping
-/// limits steps in directions that the data hardly determine.
-constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;
 
@@ -42,7 +39,7 @@ Scan::Scan(const std::vector<Record>& records, const std::vector<Cause>& causes,
   if (!usable_) return;
   jacobian_ = jacobian;
   Eigen::MatrixXd normal = jacobian_.transpose() * jacobian_;
-  normal.diagonal() *= 1 + damping;
+  normal.diagonal() *= 1 + step_damping;
   normal.diagonal().array() += 1e-12;
   normal_.compute(normal);
   left_ = left_of(residual_);

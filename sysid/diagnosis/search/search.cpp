@@ -24,15 +24,11 @@ constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 /// the coarse fit is below worth_a_look times the smallest one.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
-constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Smallest relative reduction of the mean square for which a form with more parameters is preferred.
-constexpr double more_numbers_gain = 0.02;
 /// Limits that select the candidates for the more precise fits. `near_enough`: candidates after the best
 /// limits::finalists also get a full fit to thinned records if their mean square is below this multiple of
-/// the smallest one. The best `always_finished` candidates get a full fit to all samples. `next_to_best`:
-/// further candidates get this fit if their mean square is below this multiple of the smallest one.
+/// the smallest one. `next_to_best`: candidates after the best finished_candidates also get a full fit to all
+/// samples if their mean square is below this multiple of the smallest one.
 constexpr double near_enough = 1.4;
-constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
 
 void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
@@ -78,19 +74,20 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
 
 /// Returns true if `fit` is better than `best`. With equally many parameters, the fit with the smaller mean
 /// square is better. Otherwise, the fit with more parameters is better only if its mean square is smaller by
-/// at least the share more_numbers_gain.
+/// at least the share limits::least_refinement_share.
 bool is_better(const StructureFit& fit, const StructureFit& best) {
+  constexpr double ratio = 1 - limits::least_refinement_share;
   double needed = 1;
-  if (fit.free_parameters > best.free_parameters) needed = 1 - more_numbers_gain;
-  if (fit.free_parameters < best.free_parameters) needed = 1 / (1 - more_numbers_gain);
+  if (fit.free_parameters > best.free_parameters) needed = ratio;
+  if (fit.free_parameters < best.free_parameters) needed = 1 / ratio;
   return fit.mean_square_mm2 < needed * best.mean_square_mm2;
 }
 
 StructureFit follow(const SearchData& data, const std::vector<StructureFit>& from) {
-  StructureFit best = fit_structure(data.thinned, from[0].causes, from[0].point, full);
+  StructureFit best = fit_structure(data.thinned, from[0].causes, from[0].point);
   for (std::size_t i = 1; i < from.size(); ++i) {
     if (from[i].mean_square_mm2 > 1.3 * from[0].mean_square_mm2) break;
-    StructureFit fit = fit_structure(data.thinned, from[i].causes, from[i].point, full);
+    StructureFit fit = fit_structure(data.thinned, from[i].causes, from[i].point);
     if (is_better(fit, best)) best = std::move(fit);
   }
   return best;
@@ -178,8 +175,8 @@ class CandidateFitter {
     const double best = best_of(order.front());
     parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
       const StructureFit& fit = fits_[order[rank]].front();
-      const bool whole = rank < always_finished || fit.mean_square_mm2 < next_to_best * best;
-      candidates_[order[rank]].fit = whole ? fit_structure(data_.records, fit.causes, fit.point, full)
+      const bool whole = rank < finished_candidates || fit.mean_square_mm2 < next_to_best * best;
+      candidates_[order[rank]].fit = whole ? fit_structure(data_.records, fit.causes, fit.point)
                                            : evaluate_structure(data_.records, fit.causes, fit.point);
     });
   }

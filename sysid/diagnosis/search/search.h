@@ -37,6 +37,10 @@ struct Candidate {
   std::string why_not;
 };
 
+/// Number of candidates that always get a full fit to all samples. Their losses on held-out blocks are
+/// computed too, which requires a refit for each fold.
+inline constexpr std::size_t finished_candidates = 4;
+
 struct CandidateSearch {
   std::vector<Cause> only = {};  ///< causes that may be tested; empty: all causes
   /// Function that receives the smallest mean square of all candidates. It returns true if the other

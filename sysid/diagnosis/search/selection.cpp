@@ -15,8 +15,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Number of candidates whose held-out losses are computed. Each of them is refitted for each fold.
-constexpr std::size_t finalists = 4;
 /// Mean square below which a residual counts as explained, as a multiple of the squared noise.
 constexpr double near_the_noise = 2;
 
@@ -74,7 +72,7 @@ class Selector {
     };
     std::stable_sort(scored.begin(), scored.end(),
                      [&](const Scored& a, const Scored& b) { return fitted(a) < fitted(b); });
-    const std::size_t count = std::min(finalists, scored.size());
+    const std::size_t count = std::min(finished_candidates, scored.size());
     parallel_for(count, data_.threads, [&](std::size_t i) {
       if (!scored[i].candidate.fit) return;
       scored[i].losses = held_out_losses(data_.records, division_, *scored[i].candidate.fit);

@@ -23,7 +23,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-constexpr std::size_t fewest_samples = 200;
 /// Refits the base structure. The parameters of the given model may be far from the true ones, so some fits
 /// start at points that are scaled to the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
@@ -137,10 +136,10 @@ class Diagnostician {
     std::vector<Record> records = make_records(logs_, options_.record);
     std::size_t readings = 0;
     for (const Record& record : records) readings += record.readings;
-    if (readings < fewest_samples) {
+    if (readings < limits::fewest_readings) {
       return Failure("only " + std::to_string(readings) +
                      " readings in total are too few to separate a cause from noise (" +
-                     std::to_string(fewest_samples) + " are needed)");
+                     std::to_string(limits::fewest_readings) + " are needed)");
     }
     // The zero offset of a log is fitted only if the offset of the first log or the initial state of the log
     // is unknown. In all other cases, an offset that changes from log to log must stay in the data. It shows

@@ -28,7 +28,6 @@ constexpr Eigen::Index load_order = 10;
 /// Number of samples at the beginning without a prediction: the largest dead time, and the start of the
 /// filters.
 constexpr Eigen::Index skipped = 34;
-constexpr Eigen::Index fewest_predictions = 200;
 /// Relative decrease of the sum of squares below which a refinement ends.
 constexpr double least_improvement = 1e-4;
 
@@ -238,7 +237,7 @@ std::vector<double> stem_positions(const std::vector<double>& command, double ba
 std::optional<StickingStem> best_sticking_stem(const std::vector<double>& command,
                                                const std::vector<double>& reading) {
   if (command.size() != reading.size() ||
-      command.size() < static_cast<std::size_t>(fewest_predictions + skipped) ||
+      command.size() < limits::fewest_readings + static_cast<std::size_t>(skipped) ||
       repeated_share(command) > limits::majority_share || repeated_share(reading) > limits::majority_share)
     return std::nullopt;
   const auto [low, high] = std::minmax_element(command.begin(), command.end());

@@ -41,10 +41,14 @@ MeasuredValve::MeasuredValve(const std::vector<Log>& logs, bool held) : logs_(lo
   }
 }
 
-ValveStage MeasuredValve::fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance,
+ValveStage MeasuredValve::fit(ValveParts parts, const std::vector<ValveStage>& from,
                               PressureSensorFit sensor) const {
-  ValveFit fit = fit_of(parts, from, sensor);
-  fit.tolerance = tolerance;
+  return fit_valve_stage(logs_, fit_of(parts, from, sensor));
+}
+
+ValveStage MeasuredValve::exact_fit(ValveParts parts, const std::vector<ValveStage>& from) const {
+  ValveFit fit = fit_of(parts, from, PressureSensorFit::gain_and_zero);
+  fit.tolerance = ValveFit{}.tolerance;
   return fit_valve_stage(logs_, fit);
 }
 
@@ -149,15 +153,14 @@ Eigen::VectorXd MeasuredValve::derivative(const ValveStage& at, double ValveStag
 std::optional<LostPressure> find_lost_pressure(const std::vector<Log>& logs, const MeasuredValve& valve,
                                                ValveParts parts, const ValveStage& scaled) {
   if (!(scaled.gauge_gain < 1 - scales_agree_within)) return std::nullopt;
-  constexpr double tolerance = 1e-6;
   LostPressure lost;
-  const ValveStage without = valve.fit(parts, {scaled}, tolerance, PressureSensorFit::zero);
+  const ValveStage without = valve.fit(parts, {scaled}, PressureSensorFit::zero);
   lost.without_kpa2 = valve.held_out_losses(parts, without, PressureSensorFit::zero);
   const BlockLosses by_scale = valve.held_out_losses(parts, scaled);
   lost.parts = parts.set(index_of(ValvePart::leak));
   ValveStage start = scaled;
   start.leak_share = 1 / scaled.gauge_gain - 1;
-  lost.stage = valve.fit(lost.parts, {start}, tolerance, PressureSensorFit::zero);
+  lost.stage = valve.fit(lost.parts, {start}, PressureSensorFit::zero);
   lost.losses_kpa2 = valve.held_out_losses(lost.parts, lost.stage, PressureSensorFit::zero);
   const double before = mean_of(lost.without_kpa2), taken = before - mean_of(lost.losses_kpa2);
   if (taken < limits::majority_share * before ||

@@ -26,9 +26,10 @@ class MeasuredValve {
 
   /// Fits the parameters of `parts` to all logs. With the default `sensor`, the gain and the zero offset of
   /// the pressure sensor are fitted too. The fits start at the points `from`.
-  /// @param tolerance  tolerance of the fit; it must be small if the parameters are reported.
-  [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
+  [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
+  /// Returns the result of fit() with a tolerance that is so small that the parameters can be reported.
+  [[nodiscard]] ValveStage exact_fit(ValveParts parts, const std::vector<ValveStage>& from) const;
 
   /// Returns the better one of two fits of `parts`: `one`, and a fit that starts at `other`. `other` was
   /// fitted with only some of the parts. The second fit is made only if the RMSE of `other` is less than 1.5

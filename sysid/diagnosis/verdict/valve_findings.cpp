@@ -33,10 +33,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest share of the remaining mean square that a separate time constant for venting must explain. This
-/// second time constant refines the lag and is not reported as a cause, so its limit is lower than the limit
-/// of a cause.
-constexpr double least_detail = 0.02;
 /// Largest number of samples of all logs together. Logs with more samples are thinned to every second, third,
 /// ... sample. A valve model has few parameters, so the remaining samples are sufficient.
 constexpr std::size_t most_samples = 30'000;
@@ -104,8 +100,10 @@ double range_of(const std::vector<Log>& logs, std::vector<double> Log::*column) 
   return highest > lowest ? highest - lowest : 0;
 }
 
+/// Returns the smallest share of the remaining mean square that a part must explain. A separate time constant
+/// for venting only refines the lag and is not reported as a cause.
 double least_share_of(ValvePart part) {
-  return part == ValvePart::two_ways ? least_detail : limits::least_explained_share;
+  return part == ValvePart::two_ways ? limits::least_refinement_share : limits::least_explained_share;
 }
 
 ValveParts without(ValveParts parts, ValvePart part) {
@@ -188,7 +186,7 @@ class Search {
       there.emplace_back(std::move(name), of);
     }
     found.noise_kpa = pressure_noise_kpa(logs_);
-    found.stage = valve_.fit(kept, {whole_.stage}, 1e-12);
+    found.stage = valve_.exact_fit(kept, {whole_.stage});
     found.heldout_rmse_kpa = rmse_mm(valve_.held_out_losses(kept, found.stage));
     if (found.stage.is_far_off()) return found;
     for (const auto& [name, of] : there) {

@@ -75,7 +75,7 @@ TEST(MeasuredValve, HeldOutLossComesFromAFitToTheOtherBlocks) {
 TEST(MeasuredValve, GaugeStandardErrorsMatchALinearRegression) {
   const std::vector<Log> logs{straight_log(40, 0, 5)};
   const MeasuredValve valve(logs, false);
-  const ValveStage stage = valve.fit({}, {ValveStage{}}, 1e-12);
+  const ValveStage stage = valve.exact_fit({}, {ValveStage{}});
   const auto errors = valve.standard_errors(stage, {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa});
   double su = 0, suu = 0;
   const double n = static_cast<double>(logs[0].size());
@@ -97,7 +97,7 @@ TEST(MeasuredValve, BlockwiseOffsetRaisesTheStandardError) {
   const std::vector<Log> white{straight_log(40, 0, 7)}, lasting{straight_log(40, noise_kpa, 7)};
   const auto error_of = [](const std::vector<Log>& logs) {
     const MeasuredValve valve(logs, false);
-    return valve.standard_errors(valve.fit({}, {ValveStage{}}, 1e-12),
+    return valve.standard_errors(valve.exact_fit({}, {ValveStage{}}),
                                  {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa})[1];
   };
   // Each of the 40 blocks has its own random offset, which is as large as the noise. The log therefore
