@@ -14,6 +14,7 @@
 #include "base/json.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/recordings/recording.h"
 
 namespace softgrip::sysid::health {
@@ -36,10 +37,7 @@ bool is_run(const fs::path& path) {
 /// Returns the median temperature of a run. One value per run is enough, because the temperature of a finger
 /// hardly changes during a grip.
 double temperature_of(const sysid::Log& log) {
-  std::vector<double> known;
-  for (const double temperature_c : log.temperature_c) {
-    if (std::isfinite(temperature_c)) known.push_back(temperature_c);
-  }
+  std::vector<double> known = finite_values(log.temperature_c).values;
   return known.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span<double>(known));
 }
 

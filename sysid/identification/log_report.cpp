@@ -1,9 +1,9 @@
 #include "sysid/identification/log_report.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/numbers.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -36,7 +36,7 @@ Fields fields_of_score(const Score& s, double span_mm) {
   const auto in_unit = [&](const char* title) { return model::in_unit(title, s.output_unit); };
   return {{"", "log", s.name},
           {"drive", "driven by", name_of(s.drive)},
-          {"", "samples", std::ranges::count_if(s.error_mm, [](double e) { return std::isfinite(e); })},
+          {"", "samples", finite_count(s.error_mm)},
           {"", in_unit("span [mm]"), or_dash(span_mm)},
           {"rmse_mm", in_unit("RMSE [mm]"), or_dash(s.rmse_mm)},
           {"rmse_percent_of_span", "RMSE [% of span]", or_dash(s.rmse_percent_of_span)},

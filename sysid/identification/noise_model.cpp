@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 
 Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series, int most_lags) {
   Autocovariance covariance;
-  for (const auto& s : series) {
-    covariance.samples += static_cast<std::size_t>(
-        std::count_if(s.begin(), s.end(), [](double e) { return std::isfinite(e); }));
-  }
+  for (const auto& s : series) covariance.samples += finite_count(s);
   const auto lags = std::min<std::size_t>(static_cast<std::size_t>(most_lags), covariance.samples / 10);
   covariance.lags.assign(lags + 1, 0.0);
   for (const auto& s : series) {

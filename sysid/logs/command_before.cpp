@@ -9,6 +9,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "sysid/logs/command_range.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -42,10 +43,8 @@ constexpr std::size_t fewest_standing = 4 * at_an_end;
 
 /// Returns the median of the readings in [first, last); NaN if this range contains no reading.
 double median_mm(const Log& log, std::size_t first, std::size_t last) {
-  std::vector<double> readings;
-  for (std::size_t i = first; i < last; ++i) {
-    if (std::isfinite(log.displacement_mm[i])) readings.push_back(log.displacement_mm[i]);
-  }
+  std::vector<double> readings =
+      finite_values(std::span(log.displacement_mm).subspan(first, last - first)).values;
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
 }
 
@@ -54,15 +53,13 @@ double median_mm(const Log& log, std::size_t first, std::size_t last) {
 double range_of_medians_mm(const Log& log) {
   std::vector<double> medians;
   std::vector<double> group;
-  for (const double reading : log.displacement_mm) {
-    if (std::isfinite(reading)) group.push_back(reading);
+  for (const double reading : finite_values(log.displacement_mm).values) {
+    group.push_back(reading);
     if (group.size() < at_an_end) continue;
     medians.push_back(median_of(std::span(group)));
     group.clear();
   }
-  if (medians.empty()) return 0;
-  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
-  return *most - *least;
+  return width_of(medians);
 }
 
 /// Returns the command of the log that is nearest to a pressure. If the pressure is outside the range of the

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -116,8 +117,7 @@ Division divide_into_halves(const std::vector<Record>& records) {
 
 void hide_readings(Record& record, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-  record.readings = static_cast<std::size_t>(std::count_if(record.reading_mm.begin(), record.reading_mm.end(),
-                                                           [](double y) { return std::isfinite(y); }));
+  record.readings = finite_count(record.reading_mm);
 }
 
 std::vector<Record> with_first_readings(std::vector<Record> records, double share) {

@@ -9,7 +9,7 @@
 #include "base/statistics.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/command_range.h"
-#include "sysid/logs/unit_factors.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -47,10 +47,8 @@ std::optional<WrongFirstCommand> wrong_first_command(const Log& log) {
          std::abs(command[standing] - found.next_kpa) <= steady_drive_share * range_kpa)
     ++standing;
   if (standing < samples + fewest_held || standing == log.size()) return {};
-  std::vector<double> first;
-  for (std::size_t i = 0; i < samples + most_wrong; ++i) {
-    if (std::isfinite(log.displacement_mm[i])) first.push_back(log.displacement_mm[i]);
-  }
+  const std::span<const double> readings(log.displacement_mm);
+  std::vector<double> first = finite_values(readings.first(samples + most_wrong)).values;
   if (first.empty()) return {};
   const double first_mm = median_of(std::span(first));
   const double under_next_mm = usual_reading_mm(log, standing, found.next_kpa, range_kpa);
@@ -60,8 +58,7 @@ std::optional<WrongFirstCommand> wrong_first_command(const Log& log) {
   if (std::isnan(under_first_mm)) {
     // No other sample has the first command. It is beyond all other commands, so the reading would be beyond
     // all other readings.
-    const auto extent = extent_of(
-        std::vector(log.displacement_mm.begin() + static_cast<long>(standing), log.displacement_mm.end()));
+    const auto extent = extent_of(readings.subspan(standing));
     is_wrong = extent && extent->lowest <= first_mm && first_mm <= extent->highest;
   }
   if (!is_wrong) return {};

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/statistics.h"
 #include "sysid/logs/excitation.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -16,18 +16,6 @@ constexpr double least_turn = 5;
 /// A column is not smoothed if its noise is below this share of its range, because such noise hardly affects
 /// the response of a model.
 constexpr double negligible_share = 1e-4;
-
-/// Returns the difference between the largest and the smallest finite value; minus infinity if no value is
-/// finite.
-double range_of(std::span<const double> values) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  return high - low;
-}
 
 /// Degrees of freedom of Student's t distribution, which describes the increments of the slope. The slope is
 /// mostly constant and sometimes jumps. With a normal distribution, a single fast vent would increase the
@@ -70,7 +58,7 @@ void advance(Estimate& e, double dt, double drift_rate) {
 double filter(const Path& path, double drift_rate, std::vector<Estimate>* before) {
   const auto& values = path.values;
   const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  const double range = std::max(range_of(values), path.noise);
+  const double range = std::max(width_of(values), path.noise);
   Estimate e{*first, 0, range * range, 0, 0};
   e.ss = std::pow(range / std::max(path.step_s(1), 1e-9), 2);
   double cost = 0;
@@ -163,10 +151,7 @@ Smooth disturbances(const Path& path, double drift_rate) {
 }  // namespace
 
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
-  std::vector<std::size_t> measured;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i])) measured.push_back(i);
-  }
+  const std::vector<std::size_t> measured = finite_values(values).samples;
   std::vector<double> deviations;
   for (std::size_t k = 2; k < measured.size(); ++k) {
     // Compute the deviation of a value from the straight line between its neighbours. The divisor makes the
@@ -196,7 +181,7 @@ std::vector<double> smoothed(std::span<const double> time_s, std::span<const dou
 
 double smooth_input(std::span<const double> time_s, std::vector<double>& values) {
   const double noise = white_noise_of(time_s, values);
-  if (values.size() < 3 || !(noise > negligible_share * range_of(values))) return 0;
+  if (values.size() < 3 || !(noise > negligible_share * width_of(values))) return 0;
   values = steady_between_turns(smoothed(time_s, values, noise), least_turn * noise);
   return noise;
 }

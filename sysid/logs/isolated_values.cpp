@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 #include "base/numbers.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -48,13 +48,7 @@ Neighbourhood neighbourhood(const std::vector<double>& r, std::size_t i) {
 }
 
 std::vector<IsolatedValue> isolated_values(const std::vector<double>& column, double noise) {
-  std::vector<std::size_t> samples;
-  std::vector<double> values;
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    if (!std::isfinite(column[i])) continue;
-    samples.push_back(i);
-    values.push_back(column[i]);
-  }
+  const auto [samples, values] = finite_values(column);
   std::vector<IsolatedValue> isolated;
   for (std::size_t i = 2; i + 2 < values.size(); ++i) {
     const double distance = values[i] - neighbours_median(values, i);
@@ -68,9 +62,7 @@ std::vector<IsolatedValue> isolated_values(const std::vector<double>& column, do
 }
 
 double usual_span(const std::vector<double>& column) {
-  std::vector<double> sorted;
-  std::copy_if(column.begin(), column.end(), std::back_inserter(sorted),
-               [](double value) { return std::isfinite(value); });
+  std::vector<double> sorted = finite_values(column).values;
   if (sorted.empty()) return 0;
   std::sort(sorted.begin(), sorted.end());
   return sorted[sorted.size() - 1 - sorted.size() / 20] - sorted[sorted.size() / 20];

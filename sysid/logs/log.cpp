@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "sysid/logs/csv_text.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {
@@ -118,14 +118,7 @@ Sampling sampling_of(const Log& log) {
 }
 
 double span_mm(const Log& log) {
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -lowest;
-  for (const double value : log.displacement_mm) {
-    if (!std::isfinite(value)) continue;
-    lowest = std::min(lowest, value);
-    highest = std::max(highest, value);
-  }
-  return highest < lowest ? 0 : highest - lowest;
+  return width_of(log.displacement_mm);
 }
 
 double largest_command_kpa(const std::vector<Log>& logs) {

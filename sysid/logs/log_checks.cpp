@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 
 #include "base/numbers.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/first_command.h"
 #include "sysid/logs/first_readings.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/sensor_codes.h"
 #include "sysid/logs/signal_gaps.h"
-#include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -249,7 +248,7 @@ class Check {
     const auto& readings = log_.displacement_mm;
     const auto first = std::find_if(readings.begin(), readings.end(), missing);
     if (first == readings.end()) return;
-    const auto count = static_cast<std::size_t>(std::count_if(readings.begin(), readings.end(), missing));
+    const std::size_t count = readings.size() - finite_count(readings);
     const double share = static_cast<double>(count) / static_cast<double>(readings.size());
     const auto at = static_cast<std::size_t>(first - readings.begin());
     const std::string message = percent(share) + " of the samples have no reading";

@@ -1,7 +1,6 @@
 #include "sysid/logs/plausibility_warnings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "base/statistics.h"
 #include "model/port_flow.h"
 #include "sysid/logs/command_range.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/unit_factors.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -15,6 +14,7 @@
 #include "model/named.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/command_range.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/input_smoothing.h"
 
 namespace softgrip::sysid {
@@ -37,13 +37,11 @@ void fill_missing(std::vector<double>& values) {
 
 /// Returns the readings before the drive changes.
 std::vector<double> readings_before_motion(const Record& record) {
-  std::vector<double> readings;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (std::abs(record.drive_kpa[i] - record.drive_kpa.front()) > steady_drive_share * record.largest_kpa)
-      break;
-    if (std::isfinite(record.reading_mm[i])) readings.push_back(record.reading_mm[i]);
-  }
-  return readings;
+  const auto moves = std::ranges::find_if(record.drive_kpa, [&](double kpa) {
+    return std::abs(kpa - record.drive_kpa.front()) > steady_drive_share * record.largest_kpa;
+  });
+  const auto still = static_cast<std::size_t>(moves - record.drive_kpa.begin());
+  return finite_values(std::span(record.reading_mm).first(still)).values;
 }
 
 /// Returns the standard error of the median of several readings [mm], which is sqrt(pi / 2) times the
@@ -54,13 +52,9 @@ double median_error_mm(const Record& record, std::size_t readings) {
 
 /// Returns true if no step between neighbouring readings is larger than the first one.
 bool begins_with_the_largest_step(const Record& record) {
-  std::vector<double> readings;
-  std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(readings),
-               [](double y) { return std::isfinite(y); });
-  double largest_mm = 0;
-  for (std::size_t i = 2; i < readings.size(); ++i)
-    largest_mm = std::max(largest_mm, std::abs(readings[i] - readings[i - 1]));
-  return readings.size() > 2 && std::abs(readings[1] - readings[0]) > largest_mm;
+  const std::vector<double> readings = finite_values(record.reading_mm).values;
+  return readings.size() > 2 &&
+         std::abs(readings[1] - readings[0]) > largest_step(std::span(readings).subspan(1));
 }
 
 /// Returns true if the readings at the beginning show that the zero of the sensor has no offset. The median
@@ -121,10 +115,7 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
       std::max(sampling.longest_interval_s - nominal, nominal - sampling.shortest_interval_s);
   if (worst < 1e-9 * nominal + 2e-12) record.sample_time_s = nominal;
   for (const double p : record.drive_kpa) record.largest_kpa = std::max(record.largest_kpa, std::abs(p));
-  for (const double y : record.reading_mm) {
-    if (std::isfinite(y)) ++record.readings;
-  }
-
+  record.readings = finite_count(record.reading_mm);
   record.start = options.start;
   const bool pressurised = std::abs(record.drive_kpa.front()) > steady_drive_share * record.largest_kpa;
   record.start_unknown =

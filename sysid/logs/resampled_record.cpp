@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {
@@ -122,11 +123,9 @@ Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
   }
   thin.duration_s.assign(kept.size(), 0);
   thin.sample_time_s = 0;
-  thin.readings = 0;
-  for (std::size_t i = 0; i < thin.size(); ++i) {
-    if (i > 0) thin.duration_s[i] = step_duration_s(thin.time_s[i] - thin.time_s[i - 1]);
-    if (std::isfinite(thin.reading_mm[i])) ++thin.readings;
-  }
+  thin.readings = finite_count(thin.reading_mm);
+  for (std::size_t i = 1; i < thin.size(); ++i)
+    thin.duration_s[i] = step_duration_s(thin.time_s[i] - thin.time_s[i - 1]);
   return thin;
 }
 
@@ -150,13 +149,12 @@ Record averaged_to(const Record& record, double interval_s) {
   if (stride <= 1) return record;
   Record thin = thinned_record(record, stride);
   thin.finest_interval_s = thin.mean_interval_s();
-  thin.readings = 0;
   for (std::size_t to = 0; to < thin.size(); ++to) {
     const std::size_t at = to * stride;
     const std::size_t reach = std::min({(stride - 1) / 2, at, record.size() - 1 - at});
     thin.reading_mm[to] = mean_around(record.reading_mm, at, reach);
-    if (std::isfinite(thin.reading_mm[to])) ++thin.readings;
   }
+  thin.readings = finite_count(thin.reading_mm);
   return thin;
 }
 

@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
+
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -50,8 +51,7 @@ std::set<double> reached_by_motion(std::span<const double> values,
                          std::abs(value - neighbour) < others.distance_to(neighbour);
     if (is_near && suspects.contains(value)) reached.insert(value);
   };
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
+  for (const double value : finite_values(values).values) {
     if (before) {
       compare(value, *before);
       compare(*before, value);
@@ -65,9 +65,7 @@ std::set<double> reached_by_motion(std::span<const double> values,
 
 std::vector<double> sensor_codes(std::span<const double> values) {
   std::map<double, std::size_t> suspects;
-  std::vector<double> sorted;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
-               [](double value) { return std::isfinite(value); });
+  std::vector<double> sorted = finite_values(values).values;
   std::sort(sorted.begin(), sorted.end());
   if (sorted.size() < 20) return {};
   const double low = sorted[sorted.size() / 20];

@@ -6,22 +6,14 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
-#include "sysid/logs/unit_factors.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
 
-std::vector<std::size_t> finite_samples(const std::vector<double>& values) {
-  std::vector<std::size_t> samples;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i])) samples.push_back(i);
-  }
-  return samples;
-}
-
 /// Returns the smallest change of the command that counts as a change [kPa].
 double least_change_kpa(const Log& log) {
-  return least_gap_change * extent_of(log.pressure_command_kpa).value_or(ColumnExtent{}).width();
+  return least_gap_change * width_of(log.pressure_command_kpa);
 }
 
 SignalGap gap_between(const Log& log, std::size_t first, std::size_t last) {
@@ -51,7 +43,7 @@ std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<st
 }  // namespace
 
 std::optional<SignalGap> pressure_gap(const Log& log) {
-  std::vector<std::size_t> ends = finite_samples(log.pressure_kpa);
+  std::vector<std::size_t> ends = finite_values(log.pressure_kpa).samples;
   if (ends.size() < 2) return {};
   std::vector<double> intervals_s;
   for (std::size_t k = 1; k < ends.size(); ++k)
@@ -78,7 +70,7 @@ std::string gap_sentence(const Log& log, const SignalGap& gap) {
 }
 
 std::optional<SignalGap> frozen_range(const Log& log, const std::vector<double>& values) {
-  const std::vector<std::size_t> samples = finite_samples(values);
+  const std::vector<std::size_t> samples = finite_values(values).samples;
   const std::vector<Run> runs = runs_of(values, samples);
   const ColumnExtent extent = extent_of(values).value_or(ColumnExtent{});
   if (runs.empty()) return {};

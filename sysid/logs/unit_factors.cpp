@@ -1,9 +1,7 @@
 #include "sysid/logs/unit_factors.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "base/numbers.h"
@@ -79,17 +77,6 @@ std::string mistaken_unit(double factor, model::OutputUnit unit) {
   if (apart(factor, nearest->factor) > close) return {};
   return std::string(nearest->means) + " (a factor of " +
          significant(nearest->factor > 1 ? nearest->factor : 1 / nearest->factor) + ")";
-}
-
-std::optional<ColumnExtent> extent_of(const std::vector<double>& values) {
-  std::optional<ColumnExtent> extent;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    if (!extent) extent = ColumnExtent{value, value};
-    extent->lowest = std::min(extent->lowest, value);
-    extent->highest = std::max(extent->highest, value);
-  }
-  return extent;
 }
 
 }  // namespace softgrip::sysid

@@ -1,10 +1,7 @@
 #pragma once
 // Detects wrong units. If a unit is wrong, two values that should be equal differ by the ratio of two units.
-// Computes the range of the values in a column.
 
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "model/output_unit.h"
 
@@ -27,14 +24,5 @@ inline constexpr double small_pressure_kpa = 2;
 [[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
   return unit == model::OutputUnit::deg ? 3 : 0.1;
 }
-
-struct ColumnExtent {
-  double lowest = 0;
-  double highest = 0;
-  [[nodiscard]] double width() const { return highest - lowest; }
-};
-
-/// Returns the range of the finite values, or nullopt if no value is finite.
-[[nodiscard]] std::optional<ColumnExtent> extent_of(const std::vector<double>& values);
 
 }  // namespace softgrip::sysid

@@ -1,17 +1,13 @@
 #include "sysid/diagnosis/causes/scales.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 
 Scales scales_of(const std::vector<Record>& records) {
-  const auto varies = [](const std::vector<double>& column) {
-    if (column.empty()) return false;
-    const auto [low, high] = std::minmax_element(column.begin(), column.end());
-    return *high - *low > 1e-6 * std::max(1.0, std::abs(*high));
-  };
   Scales s;
   s.sample_s = std::numeric_limits<double>::infinity();
   const CampaignSize size = campaign_size(records);

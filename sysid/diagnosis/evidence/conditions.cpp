@@ -6,6 +6,7 @@
 
 #include "base/statistics.h"
 #include "sysid/fitting/score.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -73,16 +74,6 @@ void add_amplitudes(const Record& record, DriveHistory& h) {
               h.amplitude_kpa.begin() + static_cast<long>(end), last);
     i = end;
   }
-}
-
-bool varies(const std::vector<double>& values) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  return high - low > 1e-6 * std::max(1.0, std::abs(high));
 }
 
 /// Returns a condition and its value at each sample.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -31,11 +30,6 @@ void whiten(Jacobian& matrix, std::size_t first, std::size_t last, const NoiseMo
   }
 }
 
-std::size_t readings_of(const Record& record) {
-  return static_cast<std::size_t>(std::count_if(record.reading_mm.begin(), record.reading_mm.end(),
-                                                [](double y) { return std::isfinite(y); }));
-}
-
 /// Returns the Jacobian of all readings. The rows of each record are whitened separately. The result is empty
 /// if the prediction of the model is not finite.
 Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& space, const FitPoint& point,
@@ -48,7 +42,7 @@ Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& s
   if (!residuals->evaluate(z, r, flat)) return {};
   std::size_t first = 0;
   for (const Record& record : records) {
-    const std::size_t last = first + readings_of(record);
+    const std::size_t last = first + record.readings;
     whiten(jacobian, first, last, noise);
     first = last;
   }

@@ -11,6 +11,7 @@
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -382,11 +383,10 @@ GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm) {
   GaugeScales scales{noise_mm, std::numeric_limits<double>::infinity(),
                      -std::numeric_limits<double>::infinity()};
   for (const Record& record : records) {
-    for (const double y : record.reading_mm) {
-      if (std::isnan(y)) continue;
-      scales.lowest_mm = std::min(scales.lowest_mm, y);
-      scales.highest_mm = std::max(scales.highest_mm, y);
-    }
+    const auto extent = extent_of(record.reading_mm);
+    if (!extent) continue;
+    scales.lowest_mm = std::min(scales.lowest_mm, extent->lowest);
+    scales.highest_mm = std::max(scales.highest_mm, extent->highest);
   }
   return scales;
 }

@@ -7,6 +7,7 @@
 
 #include "base/statistics.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -18,12 +19,6 @@ void add_third_differences(const std::vector<double>& y, std::vector<double>& si
     const double third = y[i] - 3 * y[i - 1] + 3 * y[i - 2] - y[i - 3];
     if (std::isfinite(third)) sizes.push_back(std::abs(third));
   }
-}
-
-/// Returns the finite readings in their order of time. Missing readings are skipped.
-std::vector<double> readings_alone(std::vector<double> y) {
-  y.erase(std::remove_if(y.begin(), y.end(), [](double value) { return !std::isfinite(value); }), y.end());
-  return y;
 }
 
 /// Limit of the unexplained mean square of the model with causes, as a share of the unexplained mean square
@@ -49,7 +44,7 @@ double measured_noise_mm(const std::vector<Record>& records) {
     // If the sensor is slower than the log, four adjacent samples with readings are rare. In this case, the
     // third differences are computed from consecutive readings, even if samples without a reading lie between
     // them.
-    const std::vector<double> readings = readings_alone(record.reading_mm);
+    const std::vector<double> readings = finite_values(record.reading_mm).values;
     const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <limits>
 #include <span>
 
@@ -13,6 +12,7 @@
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/command_range.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/isolated_values.h"
 #include "sysid/logs/record.h"
 #include "sysid/logs/sensor_codes.h"
@@ -73,8 +73,8 @@ void hide_codes(Record& record, OutlierEvidence& evidence) {
   if (codes.empty()) return;
   const auto is_code = [&](double value) { return std::binary_search(codes.begin(), codes.end(), value); };
   std::vector<double> others;
-  for (const double value : record.reading_mm) {
-    if (std::isfinite(value) && !is_code(value)) others.push_back(value);
+  for (const double value : finite_values(record.reading_mm).values) {
+    if (!is_code(value)) others.push_back(value);
   }
   const double usual_mm = median_of(std::span(others));
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -83,35 +83,20 @@ void hide_codes(Record& record, OutlierEvidence& evidence) {
   }
 }
 
-/// The finite readings of a record, with the index of the sample of each reading.
-struct Readings {
-  std::vector<std::size_t> samples;
-  std::vector<double> mm;
-};
-
-Readings readings_of(const Record& record) {
-  Readings readings;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (!std::isfinite(record.reading_mm[i])) continue;
-    readings.samples.push_back(i);
-    readings.mm.push_back(record.reading_mm[i]);
-  }
-  return readings;
-}
-
 /// Hides the first two and the last two readings of a record if they are far from all other readings. These
 /// readings have too few neighbours for the test of isolated readings. A reading of 0 is never hidden by this
 /// function, because a log may begin with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
   constexpr double far_outside = 3;
-  const Readings readings = readings_of(record);
-  const std::size_t count = readings.mm.size();
+  const FiniteValues readings = finite_values(record.reading_mm);
+  const std::size_t count = readings.values.size();
   if (count < 10 * ends) return;
-  const auto [lowest, highest] = std::minmax_element(readings.mm.begin() + ends, readings.mm.end() - ends);
+  const auto [lowest, highest] =
+      std::minmax_element(readings.values.begin() + ends, readings.values.end() - ends);
   const double low = std::min(0.0, *lowest), high = std::max(0.0, *highest);
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}, count - 2, count - 1}) {
-    const double value = readings.mm[i];
+    const double value = readings.values[i];
     if (std::max(low - value, value - high) > far_outside * (high - low))
       hide(record, readings.samples[i], value > high ? value - high : value - low, evidence);
   }
@@ -121,15 +106,15 @@ void hide_far_ends(Record& record, OutlierEvidence& evidence) {
 /// neither these readings nor the pressure change. A sensor may deliver its last value from before the start.
 void hide_isolated_ends(Record& record, double noise_mm, OutlierEvidence& evidence) {
   constexpr std::size_t beside = 4;
-  const Readings readings = readings_of(record);
-  const std::size_t count = readings.mm.size();
+  const FiniteValues readings = finite_values(record.reading_mm);
+  const std::size_t count = readings.values.size();
   if (count < 10 * beside) return;
   for (const bool first : {true, false}) {
     const auto place = [&](std::size_t k) { return first ? k : count - 1 - k; };
     std::array<double, beside> near{};
     double low_kpa = record.drive_kpa[readings.samples[place(0)]], high_kpa = low_kpa;
     for (std::size_t k = 0; k < beside; ++k) {
-      near[k] = readings.mm[place(k + 1)];
+      near[k] = readings.values[place(k + 1)];
       const double drive_kpa = record.drive_kpa[readings.samples[place(k + 1)]];
       low_kpa = std::min(low_kpa, drive_kpa);
       high_kpa = std::max(high_kpa, drive_kpa);
@@ -137,7 +122,7 @@ void hide_isolated_ends(Record& record, double noise_mm, OutlierEvidence& eviden
     if (high_kpa - low_kpa > steady_drive_share * record.largest_kpa) continue;
     const auto [lowest, highest] = std::minmax_element(near.begin(), near.end());
     const double spread_mm = *highest - *lowest;
-    const double distance_mm = readings.mm[place(0)] - median_of(std::span<double>(near));
+    const double distance_mm = readings.values[place(0)] - median_of(std::span<double>(near));
     if (std::abs(distance_mm) > isolated_beyond * noise_mm &&
         std::abs(distance_mm) > isolated_alone * spread_mm)
       hide(record, readings.samples[place(0)], distance_mm, evidence);
@@ -157,9 +142,8 @@ double noise_of(const std::vector<Record>& records) {
 }
 
 std::string sentence_of(const Log& log, const std::vector<std::size_t>& wrong) {
-  const auto readings = std::count_if(log.displacement_mm.begin(), log.displacement_mm.end(),
-                                      [](double value) { return std::isfinite(value); });
-  return log.name + ": " + std::to_string(wrong.size()) + " of " + std::to_string(readings) +
+  return log.name + ": " + std::to_string(wrong.size()) + " of " +
+         std::to_string(finite_count(log.displacement_mm)) +
          (wrong.size() == 1 ? " readings is an outlier" : " readings are outliers") +
          ", removed: " + listed(log.displacement_mm, log.time_s, wrong, model::name_of(log.output_unit));
 }

@@ -6,8 +6,10 @@
 #include <Eigen/Dense>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "model/line_loss.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -17,17 +19,10 @@ std::size_t blocks_of(const Log& log) {
       1, static_cast<std::size_t>((log.time_s.back() - log.time_s.front()) / block_length_s));
 }
 
-double mean_of(const BlockLosses& losses) {
-  const double root = rmse_mm(losses);
-  return root * root;
-}
-
 double highest_kpa(const std::vector<Log>& logs) {
   double highest = 0;
   for (const Log& log : logs) {
-    for (const double p : log.pressure_kpa) {
-      if (std::isfinite(p)) highest = std::max(highest, p);
-    }
+    if (const auto extent = extent_of(log.pressure_kpa)) highest = std::max(highest, extent->highest);
   }
   return highest;
 }
@@ -162,9 +157,10 @@ std::optional<LostPressure> find_lost_pressure(const std::vector<Log>& logs, con
   start.leak_share = 1 / scaled.gauge_gain - 1;
   lost.stage = valve.fit(lost.parts, {start}, PressureSensorFit::zero);
   lost.losses_kpa2 = valve.held_out_losses(lost.parts, lost.stage, PressureSensorFit::zero);
-  const double before = mean_of(lost.without_kpa2), taken = before - mean_of(lost.losses_kpa2);
+  const double before = square(rmse_mm(lost.without_kpa2)),
+               taken = before - square(rmse_mm(lost.losses_kpa2));
   if (taken < limits::majority_share * before ||
-      taken < (1 - limits::form_error_share) * (before - mean_of(by_scale)))
+      taken < (1 - limits::form_error_share) * (before - square(rmse_mm(by_scale))))
     return std::nullopt;
   lost.highest_kpa = highest_kpa(logs);
   lost.missing_kpa =

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -27,6 +26,7 @@
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/verdict/measured_valve.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/finite_values.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/resampled_record.h"
 
@@ -89,15 +89,9 @@ PartName leak_name() {
 }
 
 double range_of(const std::vector<Log>& logs, std::vector<double> Log::*column) {
-  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-  for (const Log& log : logs) {
-    for (const double value : log.*column) {
-      if (!std::isfinite(value)) continue;
-      lowest = std::min(lowest, value);
-      highest = std::max(highest, value);
-    }
-  }
-  return highest > lowest ? highest - lowest : 0;
+  std::vector<double> all;
+  for (const Log& log : logs) all.insert(all.end(), (log.*column).begin(), (log.*column).end());
+  return width_of(all);
 }
 
 /// Returns the smallest share of the remaining mean square that a part must explain. A separate time constant
