@@ -42,12 +42,13 @@ struct Pair {
   bool indistinguishable = false;
 };
 
-std::vector<Cause> next_best(const NamedCause& named) {
+/// Returns the best two candidates, without the named cause.
+/// @param named  nullptr: no cause is named.
+std::vector<Cause> next_best(const std::vector<CandidateScore>& candidates, const Cause* named) {
   std::vector<Cause> causes;
-  for (const CandidateScore& score : named.candidates) {
-    if (score.cause == named.cause || !std::isfinite(score.heldout_rmse_mm)) continue;
-    causes.push_back(score.cause);
-    if (causes.size() == 2) break;
+  for (const CandidateScore& score : candidates) {
+    const bool is_named = named != nullptr && score.cause == *named;
+    if (causes.size() < 2 && !is_named && std::isfinite(score.heldout_rmse_mm)) causes.push_back(score.cause);
   }
   return causes;
 }
@@ -115,7 +116,7 @@ class Designer {
 
   void add_contest(const NamedCause& named) {
     std::vector<Cause> alternatives = named.alternatives;
-    if (alternatives.empty() && options_.always) alternatives = next_best(named);
+    if (alternatives.empty() && options_.always) alternatives = next_best(named.candidates, &named.cause);
     if (alternatives.size() > limits::most_alternatives) alternatives.resize(limits::most_alternatives);
     const std::vector<Cause>& standing = d_.extended.causes;
     const bool stands = std::find(standing.begin(), standing.end(), named.cause) != standing.end();
@@ -129,11 +130,7 @@ class Designer {
   /// Adds a comparison between the refitted model and at most two rejected causes. The comparison is used if
   /// the verdict names no cause.
   void add_contest_of_rejected() {
-    std::vector<Cause> alternatives;
-    for (const CandidateScore& score : d_.rejected) {
-      if (std::isfinite(score.heldout_rmse_mm) && alternatives.size() < 2)
-        alternatives.push_back(score.cause);
-    }
+    const std::vector<Cause> alternatives = next_best(d_.rejected, nullptr);
     if (!alternatives.empty()) add_contest(d_.recalibrated, alternatives, "none", d_.recalibrated);
   }
 

@@ -25,30 +25,15 @@ constexpr double beyond_noise = 10;
 
 using Line = std::pair<double, double>;  // a straight line, stated as its value at 0 and its slope
 
-/// Returns the value that a chi-square variable with `freedom` degrees of freedom exceeds in 1 of 1000 cases
-/// (Wilson and Hilferty 1931).
-double chi_square_limit(double freedom) {
-  if (freedom < 1) return std::numeric_limits<double>::infinity();
-  const double v = 2 / (9 * freedom);
-  return freedom * std::pow(1 - v + limits::strict_deviate * std::sqrt(v), 3);
-}
-
 Line line_through(const std::vector<GaugeReading>& readings, const std::vector<double>& values,
                   const std::function<bool(std::size_t)>& use) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  PairSums sums;
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    if (!use(i)) continue;
-    const double x = readings[i].position_mm;
-    n += 1;
-    sx += x;
-    sy += values[i];
-    sxx += x * x;
-    sxy += x * values[i];
+    if (use(i)) sums.add(readings[i].position_mm, values[i]);
   }
-  const double spread = n * sxx - sx * sx;
-  if (n < 2 || spread <= 1e-12 * n * sxx) return {n > 0 ? sy / n : 0, 0};
-  const double slope = (n * sxy - sx * sy) / spread;
-  return {(sy - slope * sx) / n, slope};
+  if (sums.count < 2 || sums.variance_x() <= 1e-12 * sums.count * sums.xx)
+    return {sums.count > 0 ? sums.y / sums.count : 0, 0};
+  return {(sums.y - sums.slope() * sums.x) / sums.count, sums.slope()};
 }
 
 class Checker {
@@ -200,7 +185,8 @@ class Checker {
 
   [[nodiscard]] bool explains(const GaugeFit& fit, double tolerance_mm) const {
     const auto freedom = static_cast<double>(readings_.size()) - static_cast<double>(fit.free);
-    return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
+    return freedom < 1 ||
+           chi_square(fit, tolerance_mm) <= chi_square_quantile(limits::strict_deviate, freedom);
   }
 
   /// Compares every hypothesis with the most likely one. A share of the difference between their predictions

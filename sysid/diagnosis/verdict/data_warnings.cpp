@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "base/text.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
@@ -35,17 +36,12 @@ constexpr FitEffort alone{.most_iterations = 40, .tolerance = 1e-6};
 /// Returns the share of the variance of the readings that the fit explains. The share is negative if the fit
 /// has a larger error than a constant prediction by the mean of the readings.
 double explained_share(const std::vector<Record>& records, const StructureFit& fit) {
-  double sum = 0, squares = 0, count = 0;
+  PairSums sums;
   for (const Record& record : records) {
-    for (const double y : record.reading_mm) {
-      if (!std::isfinite(y)) continue;
-      sum += y;
-      squares += y * y;
-      count += 1;
-    }
+    for (const double y : record.reading_mm) sums.add(y, y);
   }
-  if (count == 0) return 0;
-  const double variance = squares / count - (sum / count) * (sum / count);
+  if (sums.count == 0) return 0;
+  const double variance = sums.xx / sums.count - square(sums.x / sums.count);
   return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
 }
 
