@@ -1,10 +1,8 @@
 #include "sysid/changes/change_claim.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string>
 
 #include "base/statistics.h"
 #include "sysid/changes/bins.h"

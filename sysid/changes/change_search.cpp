@@ -1,7 +1,6 @@
 #include "sysid/changes/change_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <tuple>
 #include <utility>

@@ -1,7 +1,6 @@
 #pragma once
 // Determines at which operating points a cause must have an effect if it is present.
 
-#include <cstddef>
 #include <string_view>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "sysid/diagnosis/search/selection.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>

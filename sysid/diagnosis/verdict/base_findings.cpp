@@ -1,7 +1,6 @@
 #include "sysid/diagnosis/verdict/base_findings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <utility>
 
