@@ -100,8 +100,7 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   record.campaign_time_s = campaign_time_s;
   record.held = options.held;
   record.span_mm = span_mm(log);
-  if (options.drive == Drive::measured)
-    record.drive_noise_kpa = smooth_input(record.time_s, record.drive_kpa);
+  if (options.drive == Drive::measured) static_cast<void>(smooth_input(record.time_s, record.drive_kpa));
   for (auto* column : {&record.temperature_c, &record.supply_kpa})
     static_cast<void>(smooth_input(record.time_s, *column));
   for (auto* column : {&record.drive_kpa, &record.temperature_c, &record.supply_kpa}) fill_missing(*column);

@@ -81,7 +81,6 @@ struct Record {
   double finest_interval_s = 0;
   double campaign_time_s = 0;     ///< start of the record, relative to the start of the first log
   double span_mm = 0;             ///< range of the readings
-  double drive_noise_kpa = 0;     ///< standard deviation of the noise of a measured drive before smoothing
   double largest_kpa = 0;         ///< largest magnitude of the drive
   double largest_before_kpa = 0;  ///< largest magnitude of the drive in all records of the campaign before
                                   ///< this one

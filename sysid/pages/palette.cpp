@@ -38,10 +38,6 @@ std::string variables(std::string_view Role::*scheme) {
 
 }  // namespace
 
-std::string_view light_code(Colour colour) {
-  return role_of(colour).light;
-}
-
 std::string stroked(Colour stroke) {
   const Role& role = role_of(stroke);
   return " class=\"s-" + std::string(role.name) + "\" stroke=\"" + std::string(role.light) + '"';

@@ -29,9 +29,6 @@ enum class Colour {
   panel,  ///< colour of the background of a box on the page
 };
 
-/// Returns the colour code of the light scheme, such as "#0072b2".
-[[nodiscard]] std::string_view light_code(Colour colour);
-
 /// Returns attributes that set the colours of an SVG element. The text begins with a blank. If a colour is
 /// not passed, the element inherits the attribute of this colour.
 [[nodiscard]] std::string stroked(Colour stroke);

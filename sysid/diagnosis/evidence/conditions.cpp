@@ -39,20 +39,14 @@ void add_rates(const Record& record, DriveHistory& h) {
 
 void add_turns(const Record& record, DriveHistory& h) {
   double turned_s = record.time_s.front();
-  double turned_kpa = record.drive_kpa.front();
   double largest = record.largest_before_kpa;
   bool falling = false;
   for (std::size_t i = 0; i < record.size(); ++i) {
-    if (i > 0 && h.branch[i] != h.branch[i - 1]) {
-      turned_s = record.time_s[i];
-      turned_kpa = record.drive_kpa[i];
-    }
+    if (i > 0 && h.branch[i] != h.branch[i - 1]) turned_s = record.time_s[i];
     const bool stands = h.branch[i] == Branch::rest || h.branch[i] == Branch::hold;
     largest = std::max(largest, record.drive_kpa[i]);
     if (!stands) falling = h.branch[i] == Branch::unloading;
     h.falling.push_back(falling);
-    h.since_turn_s.push_back(record.time_s[i] - turned_s);
-    h.turn_kpa.push_back(turned_kpa);
     h.dwell_s.push_back(stands ? record.time_s[i] - turned_s : none);
     h.largest_kpa.push_back(largest);
   }
@@ -110,20 +104,6 @@ Condition column(std::string id, std::string axis, std::string phrase, const Sam
 }
 
 }  // namespace
-
-const char* name_of(Branch branch) {
-  switch (branch) {
-    case Branch::rest:
-      return "rest";
-    case Branch::loading:
-      return "loading";
-    case Branch::hold:
-      return "hold";
-    case Branch::unloading:
-      return "unloading";
-  }
-  return "";
-}
 
 DriveHistory history_of(const Record& record) {
   DriveHistory h;

@@ -13,7 +13,6 @@ namespace softgrip::sysid {
 
 /// Phase of the pressure curve at a sample.
 enum class Branch : std::uint8_t { rest, loading, hold, unloading };
-[[nodiscard]] const char* name_of(Branch branch);
 
 /// History of the drive of a record. Each vector has one value per sample.
 struct DriveHistory {
@@ -22,9 +21,6 @@ struct DriveHistory {
   std::vector<Branch> branch;
   std::vector<bool> falling;    ///< true: the last change of the pressure was a fall
   std::vector<double> dwell_s;  ///< time since the pressure became constant; NaN while the pressure changes
-  /// Time since the pressure last changed its phase (rest, loading, hold or unloading).
-  std::vector<double> since_turn_s;
-  std::vector<double> turn_kpa;  ///< pressure at the last change of the phase
   /// Peak pressure of the current load cycle. While the finger rests, this is the peak pressure of the
   /// previous load cycle.
   std::vector<double> amplitude_kpa;
