@@ -116,9 +116,7 @@ class SeparableResiduals final : public Residuals {
 }  // namespace
 
 Residuals::Residuals(const std::vector<Record>& records, FitSpace space)
-    : records_(records), space_(std::move(space)) {
-  for (const Record& record : records) count_ += record.readings;
-}
+    : records_(records), space_(std::move(space)), count_(reading_count(records)) {}
 
 std::unique_ptr<Residuals> separable_residuals(const std::vector<Record>& records, FitSpace space) {
   const std::vector<double> middle(space.size(), 0.0);

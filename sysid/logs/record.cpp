@@ -143,6 +143,12 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
   return records;
 }
 
+std::size_t reading_count(const std::vector<Record>& records) {
+  std::size_t count = 0;
+  for (const Record& record : records) count += record.readings;
+  return count;
+}
+
 double time_unit_s(double interval_s, double length_s) {
   constexpr double intervals = 10, share = 0.5;
   const bool resolves_1_s = intervals * interval_s <= 1 && share * length_s >= 1;

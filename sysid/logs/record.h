@@ -105,6 +105,9 @@ struct Record {
 /// log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
+/// Returns the number of readings in all records.
+[[nodiscard]] std::size_t reading_count(const std::vector<Record>& records);
+
 /// Returns the unit of time in which a fit searches for dead times, lags and creep [s]. The unit is 1 s if
 /// two conditions are met: 10 sampling intervals (the smallest `finest_interval_s` of the records) are at
 /// most 1 s, and half of the longest record is at least 1 s. Otherwise the unit is the geometric mean of this

@@ -159,8 +159,7 @@ Record averaged_to(const Record& record, double interval_s) {
 }
 
 std::vector<Record> averaged_to_count(std::vector<Record> records, std::size_t most, double longest_s) {
-  std::size_t readings = 0;
-  for (const Record& record : records) readings += record.readings;
+  const std::size_t readings = reading_count(records);
   if (readings <= most) return records;
   const double samples = std::ceil(static_cast<double>(readings) / static_cast<double>(most));
   for (Record& record : records)
@@ -194,8 +193,7 @@ Record finer_record(const Record& record, std::size_t parts) {
 }
 
 std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most) {
-  std::size_t readings = 0;
-  for (const Record& record : records) readings += record.readings;
+  const std::size_t readings = reading_count(records);
   const std::size_t stride = (readings + most - 1) / std::max<std::size_t>(most, 1);
   if (stride <= 1) return records;
   for (Record& record : records) {

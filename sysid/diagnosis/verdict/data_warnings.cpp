@@ -213,9 +213,7 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs) {
 }
 
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings) {
-  std::size_t readings = 0;
-  for (const Record& record : records) readings += record.readings;
-  if (readings <= enough_readings) return false;
+  if (reading_count(records) <= enough_readings) return false;
   bool any = false;
   for (Record& record : records) {
     Record averaged = averaged_to(record, averaged_interval_s);

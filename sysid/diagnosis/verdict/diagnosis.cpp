@@ -134,8 +134,7 @@ class Diagnostician {
 
   tl::expected<void, std::string> prepare() {
     std::vector<Record> records = make_records(logs_, options_.record);
-    std::size_t readings = 0;
-    for (const Record& record : records) readings += record.readings;
+    const std::size_t readings = reading_count(records);
     if (readings < limits::fewest_readings) {
       return Failure("only " + std::to_string(readings) +
                      " readings in total are too few to separate a cause from noise (" +

@@ -53,8 +53,7 @@ class LeadSearch {
     const double lead_s = best.lead.lead_s, least_mm2 = best.fit.mean_square_mm2;
     const double beside_mm2 =
         0.5 * (at(lead_s - step_s).fit.mean_square_mm2 + at(lead_s + step_s).fit.mean_square_mm2);
-    double readings = 0;
-    for (const Record& record : best.records) readings += static_cast<double>(record.readings);
+    const auto readings = static_cast<double>(reading_count(best.records));
     const double rise_mm2 = beside_mm2 - least_mm2;
     const double deviation_s = rise_mm2 > 0 ? step_s * std::sqrt(least_mm2 / (readings * rise_mm2)) : lead_s;
     return {lead_s - limits::deviate * deviation_s, lead_s + limits::deviate * deviation_s};

@@ -58,6 +58,14 @@ Log every_tenth(const Log& log) {
   return few;
 }
 
+TEST(ReadingCount, MissingReadingsDoNotCount) {
+  const Log whole = beginning_at_rest(2, 0);
+  Log gap = whole;
+  gap.displacement_mm[3] = std::nan("");
+  EXPECT_EQ(reading_count(make_records({whole, gap}, {})), 2 * whole.size() - 1);
+  EXPECT_EQ(reading_count({}), 0U);
+}
+
 TEST(RecordOffset, MotionFromTheFirstSampleIsNoOffset) {
   EXPECT_FALSE(has_offset(beginning_at_rest(0, 0)));
   EXPECT_FALSE(has_offset(every_tenth(beginning_at_rest(0, 0))));
