@@ -32,6 +32,17 @@ Spread spread_of(std::size_t blocks, std::uint64_t seed, const BlockStatistic& s
   return spread;
 }
 
+/// Returns the mean over the blocks.
+/// @param value  function that returns the value of a block.
+template <class Value>
+Spread mean_over_blocks(std::size_t blocks, std::uint64_t seed, Value value) {
+  return spread_of(blocks, seed, [&](std::span<const std::size_t> indices) {
+    double sum = 0;
+    for (const std::size_t i : indices) sum += value(i);
+    return sum / static_cast<double>(indices.size());
+  });
+}
+
 bool is_finite_where_read(const Record& record, const std::vector<double>& residual_mm, const Block& block) {
   for (std::size_t i = block.first; i < block.last; ++i) {
     if (std::isfinite(record.reading_mm[i]) && !std::isfinite(residual_mm[i])) return false;
@@ -55,11 +66,7 @@ std::vector<double> statistic_of_draws(std::size_t blocks, std::size_t count, st
 }
 
 Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed) {
-  return spread_of(worse.size(), seed, [&](std::span<const std::size_t> indices) {
-    double sum = 0;
-    for (const std::size_t i : indices) sum += worse[i] - better[i];
-    return sum / static_cast<double>(indices.size());
-  });
+  return mean_over_blocks(worse.size(), seed, [&](std::size_t i) { return worse[i] - better[i]; });
 }
 
 bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2, std::uint64_t seed) {
@@ -68,11 +75,8 @@ bool is_missed(const BlockLosses& without, const BlockLosses& with, double least
 }
 
 Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed) {
-  return spread_of(worse.size(), seed, [&](std::span<const std::size_t> indices) {
-    double sum = 0;
-    for (const std::size_t i : indices)
-      sum += worse[i] > 0 && better[i] > 0 ? std::log(worse[i] / better[i]) : 0;
-    return sum / static_cast<double>(indices.size());
+  return mean_over_blocks(worse.size(), seed, [&](std::size_t i) {
+    return worse[i] > 0 && better[i] > 0 ? std::log(worse[i] / better[i]) : 0;
   });
 }
 

@@ -140,11 +140,17 @@ class CandidateFitter {
     });
   }
 
-  void look_at_the_best() {
+  /// Calls `work` for each candidate with a fit. The arguments are the rank of the candidate, its index, and
+  /// the smallest mean square of all candidates.
+  template <class Work>
+  void for_each_ranked(Work work) {
     const std::vector<std::size_t> order = ranking();
     const double best = best_of(order.front());
-    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
-      const std::size_t i = order[rank];
+    parallel_for(order.size(), data_.threads, [&](std::size_t rank) { work(rank, order[rank], best); });
+  }
+
+  void look_at_the_best() {
+    for_each_ranked([&](std::size_t rank, std::size_t i, double best) {
       if (rank < always_looked_at || best_of(i) < worth_a_look * best) fits_[i] = looks(data_, fits_[i]);
     });
   }
@@ -159,10 +165,7 @@ class CandidateFitter {
   }
 
   void follow_the_best() {
-    const std::vector<std::size_t> order = ranking();
-    const double best = best_of(order.front());
-    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
-      const std::size_t i = order[rank];
+    for_each_ranked([&](std::size_t rank, std::size_t i, double best) {
       if (i != leader_ && (rank < limits::finalists || best_of(i) < near_enough * best))
         fits_[i] = {follow(data_, fits_[i])};
     });
@@ -170,13 +173,11 @@ class CandidateFitter {
 
   /// Makes the final fits of the candidates to all samples.
   void finish() {
-    const std::vector<std::size_t> order = ranking();
-    const double best = best_of(order.front());
-    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
-      const StructureFit& fit = fits_[order[rank]].front();
+    for_each_ranked([&](std::size_t rank, std::size_t i, double best) {
+      const StructureFit& fit = fits_[i].front();
       const bool whole = rank < finished_candidates || fit.mean_square_mm2 < next_to_best * best;
-      candidates_[order[rank]].fit = whole ? fit_structure(data_.records, fit.causes, fit.point)
-                                           : evaluate_structure(data_.records, fit.causes, fit.point);
+      candidates_[i].fit = whole ? fit_structure(data_.records, fit.causes, fit.point)
+                                 : evaluate_structure(data_.records, fit.causes, fit.point);
     });
   }
 
