@@ -116,7 +116,7 @@ struct BaseOptions {
 
 /// Returns a copy of the record with fewer samples, for the search for changes. Each bin contains several
 /// samples. With the shortest bins, the sampling interval is 0.005 s for a pressure and 0.01 s for a
-/// displacement, because a valve responds faster than a finger.
+/// displacement.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
 /// Returns records whose reading is the measured pressure [kPa] and whose drive is the command.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "base/statistics.h"
@@ -9,7 +10,8 @@
 namespace softgrip::sysid::health {
 namespace {
 
-constexpr std::size_t day_letters = 10;  // number of characters of the date in "2026-11-22T14:30:00Z"
+/// Number of characters of the date in "2026-11-22T14:30:00Z".
+constexpr std::size_t day_letters = std::string_view("2026-11-22").size();
 
 std::size_t epoch_of(const ScoredRun& run, const std::vector<Note>& notes) {
   if (run.started_at.empty()) return 0;

@@ -17,9 +17,6 @@ constexpr std::array code_values{
     999.0,   9999.0,   99999.0,  999999.0,  999.9,        9999.9,        999.99,      9999.99, 99.99,
     -999.0,  -9999.0,  -99999.0, -999.9,    -99.9,        -99.99,        -999.99,     888.0,   8888.0,
     32767.0, -32768.0, 65535.0,  8388607.0, 2147483647.0, -2147483648.0, 4294967295.0};
-/// A value can be an error code only if it is far from all other values: the distance must be at least this
-/// multiple of the range of the other values.
-constexpr double far_outside = 3;
 constexpr double farther_outside = 10;
 constexpr std::size_t fewest_repeats = 3;
 constexpr double most_codes = 0.5;

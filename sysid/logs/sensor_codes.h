@@ -6,6 +6,10 @@
 
 namespace softgrip::sysid {
 
+/// Smallest distance of a value from all other values, as a multiple of their range, for which the value
+/// counts as far outside of them.
+inline constexpr double far_outside = 3;
+
 /// Returns the values that are error codes instead of readings, in ascending order. An error code is far
 /// outside the range of all other values. In addition, it is a typical code (999, -9999 and similar numbers),
 /// or it occurs at least three times. A value that a motion reaches through intermediate values is no error

@@ -23,7 +23,6 @@ constexpr double certain_sigma = 40;
 /// Number of waveforms whose separations are computed a second time with nonlinear fits. These are the
 /// waveforms that the linear computation ranks first.
 constexpr std::size_t confirmed = 2;
-constexpr double usual_slew_kpa_per_s = 300;
 /// Time for a rig to come to rest before an experiment starts [s].
 constexpr double rest_before_s = 10;
 
@@ -96,7 +95,7 @@ class Designer {
     data_ = make_search_data(d_.records, d_.as_given.point.model);
     data_.threads = options_.threads;
     data_.scales.residual_lines = spectrum_peaks(data_.records, d_.recalibrated.residual_mm);
-    limits_ = options_.limits.value_or(RigLimits{data_.scales.largest_kpa, usual_slew_kpa_per_s});
+    limits_ = options_.limits.value_or(RigLimits{.pressure_max_kpa = data_.scales.largest_kpa});
     for (const NamedCause& named : d_.causes) add_contest(named);
     if (d_.causes.empty()) add_contest_of_rejected();
     for (std::size_t c = 0; c < contests_.size(); ++c) {

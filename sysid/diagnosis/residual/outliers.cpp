@@ -88,7 +88,6 @@ void hide_codes(Record& record, OutlierEvidence& evidence) {
 /// function, because a log may begin with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
-  constexpr double far_outside = 3;
   const FiniteValues readings = finite_values(record.reading_mm);
   const std::size_t count = readings.values.size();
   if (count < 10 * ends) return;

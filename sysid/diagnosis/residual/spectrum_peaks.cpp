@@ -25,7 +25,9 @@ constexpr std::size_t around = 60;
 /// Number of bins per frequency resolution of the campaign. It is the ratio of the lengths of the transform
 /// and of the campaign. The frequency grid is therefore finer than this resolution.
 constexpr std::size_t resolution = 2;
-constexpr double highest_looked_at_hz = 25;
+/// Highest frequency of a line. The samples of a search (limits::search_interval_s) cannot show a faster
+/// oscillation.
+constexpr double highest_looked_at_hz = 0.5 / limits::search_interval_s;
 
 /// Common time grid of a campaign.
 struct Grid {

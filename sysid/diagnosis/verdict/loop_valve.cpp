@@ -27,7 +27,7 @@ constexpr std::array load_zeros{0.0, 0.4, 0.7, 0.85, 0.95, 0.99};
 constexpr Eigen::Index load_order = 10;
 /// Number of samples at the beginning without a prediction: the largest dead time, and the start of the
 /// filters.
-constexpr Eigen::Index skipped = 34;
+constexpr Eigen::Index skipped = dead_times.back() + 2;
 /// Relative decrease of the sum of squares below which a refinement ends.
 constexpr double least_improvement = 1e-4;
 
