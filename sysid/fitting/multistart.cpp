@@ -22,8 +22,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Maximum number of iterations from one start point.
-constexpr int search_iterations = 60;
+/// Maximum number of iterations from one start point, for a chain that has no separable parameters.
 constexpr int chain_search_iterations = 40;
 /// Number of samples in the coarse fits, which start at many points. With a larger number of samples, the
 /// coarse fits do not find better minima.
@@ -90,14 +89,14 @@ std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<Fit
   ProgressReporter reporter(progress, starts.size());
   std::vector<SearchResult> results(starts.size());
   parallel_for(starts.size(), threads, [&](std::size_t i) {
-    results[i] = few.run(starts[i], search_iterations);
+    results[i] = few.run(starts[i]);
     reporter.finished(results[i].rmse_mm);
   });
   const double lowest = lowest_rmse_mm(results);
   const std::vector<double> order_s = branch_time_constants_s(starts.front().model);
   parallel_for(starts.size(), threads, [&](std::size_t i) {
     if (results[i].rmse_mm > higher * lowest) {
-      SearchResult again = few.run(starts[i], search_iterations, slow_damping);
+      SearchResult again = few.run(starts[i], slow_damping);
       if (again.rmse_mm < results[i].rmse_mm) results[i] = std::move(again);
     }
     order_branches(order_s, results[i].point);
@@ -125,7 +124,7 @@ std::vector<SearchResult> search_separable(const SeparableSearch& all, const Fit
     if (place[i] == i && results[i].rmse_mm <= not_far * lowest) worthy.push_back(i);
   }
   parallel_for(worthy.size(), threads, [&](std::size_t i) {
-    results[worthy[i]] = all.run(results[worthy[i]].point, search_iterations);
+    results[worthy[i]] = all.run(results[worthy[i]].point);
   });
   for (std::size_t i = 0; i < results.size(); ++i) results[i] = results[place[i]];
   return results;

@@ -155,13 +155,13 @@ struct SeparableSearch::Descending {
   }
 };
 
-SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
+SearchResult SeparableSearch::run(const FitPoint& start, double damping) const {
   const SeparablePoint point = to_separable(shape_, start);
   const Descending problem{*this};
   // The steps are limited, because the derivatives describe the loss only near the current point. A rate may
   // change by a factor of at most e^2, and any other coordinate by at most twice its scale.
   const auto end = descend(problem, problem.at(point, coordinates_of(point)),
-                           {.most_steps = most_iterations,
+                           {.most_steps = 60,
                             .most_trials = 12,
                             .damping = damping,
                             .longest_step = 2,

@@ -39,7 +39,7 @@ class SeparableSearch {
   /// Searches from the nonlinear parameters of `start`. The linear parameters of `start` have no effect.
   /// @param damping  damping of the first step. A small value gives a Gauss-Newton step, a large one a short
   /// step along the gradient.
-  [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations, double damping = 1e-3) const;
+  [[nodiscard]] SearchResult run(const FitPoint& start, double damping = 1e-3) const;
 
  private:
   /// A nonlinear parameter and its bounds in the scale of the search. Rates are logarithmic. The other
