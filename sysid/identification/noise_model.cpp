@@ -7,10 +7,10 @@
 
 namespace softgrip::sysid {
 
-Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series, int most_lags) {
+Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series) {
   Autocovariance covariance;
   for (const auto& s : series) covariance.samples += finite_count(s);
-  const auto lags = std::min<std::size_t>(static_cast<std::size_t>(most_lags), covariance.samples / 10);
+  const auto lags = std::min<std::size_t>(40, covariance.samples / 10);
   covariance.lags.assign(lags + 1, 0.0);
   for (const auto& s : series) {
     for (std::size_t lag = 0; lag <= lags; ++lag) {

@@ -28,15 +28,14 @@ struct NoiseModel {
   double effective_samples = 0;
 };
 
-/// Common autocovariances of several series, up to a lag of `most_lags` samples, but at most a tenth of all
-/// samples. A value that is not finite is a gap. For every lag, the sum of products is divided by the number
-/// of all samples, not by the number of pairs. The result is therefore a valid covariance.
+/// Common autocovariances of several series, up to a lag of 40 samples, but at most a tenth of all samples. A
+/// value that is not finite is a gap. For every lag, the sum of products is divided by the number of all
+/// samples, not by the number of pairs. The result is therefore a valid covariance.
 struct Autocovariance {
   std::vector<double> lags;  ///< autocovariance for each lag from 0 [mm^2]
   std::size_t samples = 0;
 };
-[[nodiscard]] Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series,
-                                               int most_lags = 40);
+[[nodiscard]] Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series);
 
 /// Returns the autoregressive process with these autocovariances (Yule-Walker equations). Akaike's criterion
 /// selects the order of the process.

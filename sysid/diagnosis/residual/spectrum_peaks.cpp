@@ -25,6 +25,8 @@ constexpr std::size_t around = 60;
 /// Number of bins per frequency resolution of the campaign. It is the ratio of the lengths of the transform
 /// and of the campaign. The frequency grid is therefore finer than this resolution.
 constexpr std::size_t resolution = 2;
+/// Number of lines that are tested as oscillations in a search for causes.
+constexpr std::size_t looked_at_lines = 3;
 /// Highest frequency of a line. The samples of a search (limits::search_interval_s) cannot show a faster
 /// oscillation.
 constexpr double highest_looked_at_hz = 0.5 / limits::search_interval_s;
@@ -117,7 +119,7 @@ std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& 
 }  // namespace
 
 std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
-                                 const std::vector<std::vector<double>>& residual_mm, std::size_t count) {
+                                 const std::vector<std::vector<double>>& residual_mm) {
   double length_s = 0, interval_s = std::numeric_limits<double>::infinity();
   for (const Record& record : records) {
     length_s += record.length_s();
@@ -142,7 +144,7 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   }
   std::vector<Line> lines;
   for (const auto& [ratio, bin] : peaks) {
-    if (lines.size() == count) break;
+    if (lines.size() == looked_at_lines) break;
     if (is_in_drive(drive_power, bin, ratio)) continue;
     const double frequency_hz = step_hz * static_cast<double>(bin);
     // The phase is corrected for different time origins. The transform begins at the first sample, and the

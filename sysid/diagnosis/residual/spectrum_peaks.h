@@ -24,16 +24,12 @@ struct Line {
   return std::max(0.2, 10 / std::max(campaign_s, 1.0));
 }
 
-/// Number of spectral lines that are tested as oscillations in a search for causes.
-inline constexpr std::size_t looked_at_lines = 3;
-
-/// Returns the `count` most significant lines in the spectrum of the residual of the whole campaign, the most
+/// Returns the three most significant lines in the spectrum of the residual of the whole campaign, the most
 /// significant first. The significance of a line is the ratio of its power to the median power of the
 /// neighbouring frequencies. A line is omitted if the drive has a line at the same frequency that is at least
 /// half as significant, because the residual may then be a response to the drive.
 /// @param residual_mm  one vector per record, as long as the record; NaN for samples without a reading.
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
-                                               const std::vector<std::vector<double>>& residual_mm,
-                                               std::size_t count = looked_at_lines);
+                                               const std::vector<std::vector<double>>& residual_mm);
 
 }  // namespace softgrip::sysid

@@ -44,7 +44,7 @@ Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s, dou
 TEST(SpectrumPeaks, FindsAWeakOscillationWithinHalfTheResolution) {
   for (const double frequency_hz : {0.73, 3.21, 17.7}) {
     const Campaign c = campaign(frequency_hz, 0.01, 0);
-    const auto peaks = spectrum_peaks(c.records, c.residual_mm, 3);
+    const auto peaks = spectrum_peaks(c.records, c.residual_mm);
     ASSERT_FALSE(peaks.empty());
     EXPECT_NEAR(peaks.front().frequency_hz, frequency_hz, 1.0 / 120 / 2) << frequency_hz;
   }
@@ -53,7 +53,7 @@ TEST(SpectrumPeaks, FindsAWeakOscillationWithinHalfTheResolution) {
 TEST(SpectrumPeaks, StrongestLineRemoves65PercentOfTheMeanSquare) {
   // If the spectral line is subtracted from the residual, at least 65 % of the mean square must disappear.
   Campaign c = campaign(3.21, 0.2, 0);
-  const Line line = spectrum_peaks(c.records, c.residual_mm, 1).front();
+  const Line line = spectrum_peaks(c.records, c.residual_mm).front();
   double before = 0, after = 0;
   for (std::size_t k = 0; k < 2; ++k) {
     for (std::size_t i = 0; i < c.residual_mm[k].size(); ++i) {
@@ -70,19 +70,18 @@ TEST(SpectrumPeaks, StrongestLineRemoves65PercentOfTheMeanSquare) {
 TEST(SpectrumPeaks, FrequencyIsFoundDespiteIrregularSamplesAndGaps) {
   Campaign c = campaign(2.4, 0.02, 0.004);
   for (std::size_t i = 1000; i < 1200; ++i) c.residual_mm[0][i] = std::nan("");
-  EXPECT_NEAR(spectrum_peaks(c.records, c.residual_mm, 1).front().frequency_hz, 2.4, 1.0 / 120 / 2);
+  EXPECT_NEAR(spectrum_peaks(c.records, c.residual_mm).front().frequency_hz, 2.4, 1.0 / 120 / 2);
 }
 
 TEST(SpectrumPeaks, SlowZeroDriftIsNoOscillation) {
   const Campaign c = campaign(0.05, 2.0, 0);
-  for (const Line& peak : spectrum_peaks(c.records, c.residual_mm, 3))
-    EXPECT_GE(peak.frequency_hz, 0.2 - 1e-9);
+  for (const Line& peak : spectrum_peaks(c.records, c.residual_mm)) EXPECT_GE(peak.frequency_hz, 0.2 - 1e-9);
 }
 
 TEST(SpectrumPeaks, ALineOfTheDriveIsNoIndependentOscillation) {
   const auto is_found = [](double frequency_hz, double drive_hz) {
     const Campaign c = campaign(frequency_hz, 0.2, 0, drive_hz);
-    const std::vector<Line> lines = spectrum_peaks(c.records, c.residual_mm, 3);
+    const std::vector<Line> lines = spectrum_peaks(c.records, c.residual_mm);
     EXPECT_EQ(lines.size(), 3U);
     return std::any_of(lines.begin(), lines.end(),
                        [&](const Line& line) { return std::abs(line.frequency_hz - frequency_hz) < 0.03; });

@@ -39,7 +39,7 @@ Selection select(const std::function<double(double y_mm, double t_s)>& bend,
   }
   SearchData data = make_search_data(records, given);
   StructureFit base = fit_structure(data.records, {}, data.given);
-  data.scales.residual_lines = spectrum_peaks(data.records, base.residual_mm, 3);
+  data.scales.residual_lines = spectrum_peaks(data.records, base.residual_mm);
   return select_causes(data, std::move(base), noise_mm, divide(data.records, 8), options);
 }
 
