@@ -32,9 +32,9 @@ struct RegulatorNumbers {
 ///   otherwise p' = 0.
 /// The integral stops if v is at its limit and would grow further. If only the time constants are above 0,
 /// the regulator acts as a TwoWayLag whose venting time constant depends on outflow(p). A segment is divided
-/// into steps of at most `longest_step_s`. In each step, the integral is assumed to be linear in time, and
-/// outflow(p) is assumed to have its value at the middle of the step. Apart from these two approximations,
-/// the solution is exact for straight input.
+/// into steps; see steps(). In each step, the integral is assumed to be linear in time, and outflow(p) is
+/// assumed to have its value at the middle of the step. Apart from these two approximations, the solution is
+/// exact for straight input.
 template <class T>
 class RegulatedPressure {
  public:
@@ -49,6 +49,22 @@ class RegulatedPressure {
   [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
   [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
+  /// Returns the number of steps for a segment of the duration `segment_s`. A step is not longer than 5 ms,
+  /// or, for a regulator that needs more time, than 1/20 of the shorter of its two time constants. A segment
+  /// of more than 200 such steps is not divided further, because a regulator that is so fast is at rest in
+  /// most of the segment. However, a step is not longer than 1/20 of integral_s, because long steps would
+  /// make the integral unstable.
+  [[nodiscard]] int steps(double segment_s) const {
+    constexpr double usual_step_s = 0.005, steps_per_constant = 20, enough_steps = 200, most_steps = 1e6;
+    const double filling_s = value_of(n_.filling_s), venting_s = value_of(n_.venting_s);
+    const double integral_s = value_of(n_.integral_s);
+    double longest_s = std::min(filling_s, venting_s) / steps_per_constant;
+    longest_s = std::max(longest_s, segment_s / enough_steps);
+    if (integral_s > 0) longest_s = std::min(longest_s, integral_s / steps_per_constant);
+    longest_s = std::max(longest_s, usual_step_s);
+    return static_cast<int>(std::clamp(std::ceil(segment_s / longest_s - 1e-9), 1.0, most_steps));
+  }
+
   /// Computes the pressure over a segment of the command. Passes on one segment for each part of the motion
   /// in which the pressure has one direction.
   template <class Next>
@@ -59,17 +75,16 @@ class RegulatedPressure {
       return;
     }
     if (is_zero(in.duration_s)) return;  // a segment without duration does not change the pressure
-    const double wanted = std::ceil(value_of(in.duration_s) / longest_step_s - 1e-9);
-    const int steps = static_cast<int>(std::clamp(wanted, 1.0, most_steps));
-    const T step_s = in.duration_s / static_cast<double>(steps);
+    const int count = steps(value_of(in.duration_s));
+    const T step_s = in.duration_s / static_cast<double>(count);
     Segment<T> out{T(0.0), pressure_kpa_, pressure_kpa_, pressure_kpa_};
     T area(0.0);
-    for (int i = 0; i < steps; ++i) {
-      const T from = in.at(T(static_cast<double>(i) / steps)), to = in.at(T((i + 1.0) / steps));
+    for (int i = 0; i < count; ++i) {
+      const T from = in.at(T(static_cast<double>(i) / count)), to = in.at(T((i + 1.0) / count));
       const T before = pressure_kpa_;
       if (rests(from, to)) {
         // In the remaining steps of the segment, the regulator is at rest.
-        const T rest_s = step_s * static_cast<double>(steps - i);
+        const T rest_s = step_s * static_cast<double>(count - i);
         out.duration_s += rest_s;
         area += before * rest_s;
         break;
@@ -91,10 +106,6 @@ class RegulatedPressure {
   }
 
  private:
-  static constexpr double longest_step_s = 0.005;
-  /// Largest number of steps of a segment. With steps of longest_step_s, this number covers more than an
-  /// hour, in which the pressure comes to rest.
-  static constexpr double most_steps = 1e6;
   /// Gauge pressure for which venting_s is defined [kPa].
   static constexpr double usual_kpa = 50;
   static constexpr double shortest_s = 1e-4;

@@ -53,25 +53,35 @@ class SmallSteps {
   double integral_ = 0;
 };
 
-/// Compares the block with the reference solution. Some inputs are constant over a step, like the output of a
-/// board. Other inputs are ramps of up to 600 kPa/s.
-TEST(PressureRegulator, AgreesWithASmallStepIntegrator) {
+/// Returns the largest difference between the block and the reference solution [kPa]. Some inputs are
+/// constant over a step, like the output of a board. Other inputs are ramps. All times are multiplied by
+/// `slower`.
+double largest_difference_kpa(double slower) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.1, 0.4);
-  Block block = make<Block>({0.03, 0.05, 0.6, 0.4, 11});
+  Block block = make<Block>({0.03 * slower, 0.05 * slower, 0.6, 0.4 * slower, 11});
   SmallSteps referee(0.03, 0.05, 0.6, 0.4, 11);
   double at = 0, worst = 0;
   for (int i = 0; i < 80; ++i) {
     const double to = pressure(random), lasts = duration(random), from = i % 2 == 0 ? at : to;
     referee.go(lasts, from, to);
     if (from != at) pass(block, Segment<double>::straight(0, at, from));
-    pass(block, Segment<double>::straight(lasts, from, to));
+    pass(block, Segment<double>::straight(lasts * slower, from, to));
     worst = std::max(worst, std::abs(block.output() - referee.pressure_));
     at = to;
   }
+  return worst;
+}
+
+TEST(PressureRegulator, AgreesWithASmallStepIntegrator) {
   // The largest error is 0.2 % of the largest jump. This error occurs when the integral starts to change
-  // within a step.
-  EXPECT_LT(worst, 0.002 * 62) << "seed 31";
+  // within a step. The ramps have up to 600 kPa/s.
+  EXPECT_LT(largest_difference_kpa(1), 0.002 * 62) << "seed 31";
+}
+
+TEST(PressureRegulator, IsAsAccurateForASlowRegulator) {
+  for (const double slower : {5.0, 100.0, 1e5})
+    EXPECT_LT(largest_difference_kpa(slower), 0.002 * 62) << slower << " times slower, seed 31";
 }
 
 TEST(PressureRegulator, IsConstantUntilTheIntegralExceedsTheOverlap) {
@@ -125,6 +135,30 @@ TEST(PressureRegulator, RefusesAFullOpeningWithinTheOverlap) {
   EXPECT_FALSE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.5}).empty());
   EXPECT_TRUE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.6}).empty());
   EXPECT_TRUE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.0}).empty());
+}
+
+TEST(RegulatedPressure, ASlowRegulatorNeedsFewSteps) {
+  const RegulatedPressure<double> usual({0.03, 0.05, 0.4, 0.4, 12}), slow({3, 5, 0.4, 40, 12});
+  EXPECT_EQ(usual.steps(0.02), 4);
+  EXPECT_EQ(usual.steps(0.001), 1);
+  EXPECT_EQ(slow.steps(20), 134);    // 20 s / (3 s / 20)
+  EXPECT_EQ(slow.steps(1000), 500);  // 1000 s / (40 s / 20): limit of the integral
+}
+
+TEST(RegulatedPressure, AFastRegulatorIsAtRestInMostOfALongSegment) {
+  const RegulatorNumbers<double> numbers{0.05, 0.05, 0.6, 40, 11};
+  RegulatedPressure<double> whole(numbers), fine(numbers);
+  EXPECT_EQ(whole.steps(20), 200);
+  double area = 0, fine_area = 0;
+  const auto add_to = [](double& sum) {
+    return [&sum](const Segment<double>& s) { sum += s.mean * s.duration_s; };
+  };
+  for (const double kpa : {40.0, 5.0}) {
+    whole.step(Segment<double>::straight(20, kpa, kpa), add_to(area));
+    for (int i = 0; i < 20000; ++i) fine.step(Segment<double>::straight(0.001, kpa, kpa), add_to(fine_area));
+    EXPECT_NEAR(whole.output(), fine.output(), 0.01);
+  }
+  EXPECT_NEAR(area, fine_area, 2e-3 * fine_area);
 }
 
 TEST(RegulatedPressure, MeanEqualsTheAverageOverSmallSteps) {
