@@ -123,9 +123,8 @@ std::vector<SearchResult> search_separable(const SeparableSearch& all, const Fit
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (place[i] == i && results[i].rmse_mm <= not_far * lowest) worthy.push_back(i);
   }
-  parallel_for(worthy.size(), threads, [&](std::size_t i) {
-    results[worthy[i]] = all.run(results[worthy[i]].point);
-  });
+  parallel_for(worthy.size(), threads,
+               [&](std::size_t i) { results[worthy[i]] = all.run(results[worthy[i]].point); });
   for (std::size_t i = 0; i < results.size(); ++i) results[i] = results[place[i]];
   return results;
 }

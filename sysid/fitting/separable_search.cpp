@@ -160,12 +160,9 @@ SearchResult SeparableSearch::run(const FitPoint& start, double damping) const {
   const Descending problem{*this};
   // The steps are limited, because the derivatives describe the loss only near the current point. A rate may
   // change by a factor of at most e^2, and any other coordinate by at most twice its scale.
-  const auto end = descend(problem, problem.at(point, coordinates_of(point)),
-                           {.most_steps = 60,
-                            .most_trials = 12,
-                            .damping = damping,
-                            .longest_step = 2,
-                            .least_share = 1e-7});
+  const auto end = descend(
+      problem, problem.at(point, coordinates_of(point)),
+      {.most_steps = 60, .most_trials = 12, .damping = damping, .longest_step = 2, .least_share = 1e-7});
   SearchResult result{to_fit_point(start, end.point.point), 0, end.steps, end.converged};
   result.rmse_mm = std::sqrt(std::max(end.point.linear.cost, 0.0) / static_cast<double>(residual_count_));
   return result;
