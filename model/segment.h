@@ -80,6 +80,9 @@ struct Surroundings {
   /// Time from the start of the measurement campaign to the end of the sample [s]. NaN: the chain uses the
   /// sum of its step durations since reset().
   double time_s = std::numeric_limits<double>::quiet_NaN();
+  /// Time that is added to time_s in the phase of a periodic disturbance [s]. An oscillation that does not
+  /// depend on the command begins each log of a campaign with another phase.
+  double oscillation_shift_s = 0;
   double supply_kpa = 1e9;    ///< supply pressure; the default is so high that no block reacts to it
   double temperature_c = 20;  ///< temperature of the actuator
 };

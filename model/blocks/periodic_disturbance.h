@@ -9,8 +9,8 @@
 namespace softgrip::model {
 
 /// Computes the reading z = y + s sin(2 pi f t) + c cos(2 pi f t) from the displacement y. The parameters are
-/// s, c and the frequency f. t is the time since the start of the measurement campaign. The amplitude is
-/// sqrt(s^2 + c^2).
+/// s, c and the frequency f. t is the time since the start of the measurement campaign, plus the shift of the
+/// log (Surroundings::oscillation_shift_s). The amplitude is sqrt(s^2 + c^2).
 template <class T>
 class PeriodicDisturbance {
  public:
@@ -35,7 +35,7 @@ class PeriodicDisturbance {
   T sample(const T& displacement_mm, const T&, const Surroundings& surroundings) {
     using std::cos;
     using std::sin;
-    const T phase = omega_ * surroundings.time_s;
+    const T phase = omega_ * (surroundings.time_s + surroundings.oscillation_shift_s);
     return output_ = displacement_mm + sine_mm_ * sin(phase) + cosine_mm_ * cos(phase);
   }
 

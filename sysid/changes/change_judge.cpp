@@ -62,7 +62,7 @@ class Judge {
   Judge(Base base, const ChangeOptions& options, bool pressure_is_judged)
       : base_(std::move(base)), options_(options), pressure_is_judged_(pressure_is_judged) {}
 
-  void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
+  void judge(std::vector<Record> later, ChangeDiagnosis& diagnosis) {
     const Disagreement more = added_disagreement(base_, later);
     learn_temperature();
     say("search for changes in each left-out healthy run");
@@ -76,6 +76,7 @@ class Judge {
       if (unevaluated_share > 1 - limits::probability)
         diagnosis.warnings.push_back(unfamiliar_commands(unevaluated_share));
     }
+    set_oscillation_shifts(later, oscillation_shifts_s(later, residuals));
     const LaterReadings readings = readings_of(base_, later, residuals);
     const std::vector<Effect> effects =
         effects_for(base_, later, spectrum_peaks(later, residuals), pressure_is_judged_);

@@ -78,6 +78,7 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
 inline model::Surroundings surroundings_at(const Record& record, std::size_t i) {
   model::Surroundings around;
   around.time_s = record.campaign_time_s + record.time_s[i];
+  around.oscillation_shift_s = record.oscillation_shift_s;
   if (!record.temperature_c.empty()) around.temperature_c = record.temperature_c[i];
   if (!record.supply_kpa.empty()) around.supply_kpa = record.supply_kpa[i];
   return around;

@@ -79,12 +79,13 @@ struct Record {
   /// from the record, this is still the mean interval of the log. If readings were averaged, this is the
   /// interval between the averaged readings.
   double finest_interval_s = 0;
-  double campaign_time_s = 0;     ///< start of the record, relative to the start of the first log
-  double span_mm = 0;             ///< range of the readings
-  double largest_kpa = 0;         ///< largest magnitude of the drive
-  double largest_before_kpa = 0;  ///< largest magnitude of the drive in all records of the campaign before
-                                  ///< this one
-  std::size_t readings = 0;       ///< number of readings
+  double campaign_time_s = 0;      ///< start of the record, relative to the start of the first log
+  double oscillation_shift_s = 0;  ///< see model::Surroundings and oscillation_shifts_s()
+  double span_mm = 0;              ///< range of the readings
+  double largest_kpa = 0;          ///< largest magnitude of the drive
+  double largest_before_kpa = 0;   ///< largest magnitude of the drive in all records of the campaign before
+                                   ///< this one
+  std::size_t readings = 0;        ///< number of readings
   bool held = false;
   Start start = Start::automatic;  ///< assumption about the initial state
   bool start_unknown = false;      ///< true: a fit estimates the initial state

@@ -8,22 +8,23 @@
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <utility>
 
 #include <unsupported/Eigen/FFT>
 
 #include "base/statistics.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
 
 using Complex = std::complex<double>;
 
-/// Number of frequency bins on each side of a peak with which the peak is compared.
-constexpr std::size_t around = 60;
-/// Number of bins per frequency resolution of the campaign. It is the ratio of the lengths of the transform
-/// and of the campaign. The frequency grid is therefore finer than this resolution.
+/// Number of frequency bins on each side of a peak with which the peak is compared, for one record. With
+/// several records, the bins are wider and their powers are sums, so fewer bins are used.
+constexpr std::size_t widest_around = 60, narrowest_around = 10;
+/// Number of bins per frequency resolution of the longest record. It is the ratio of the lengths of the
+/// transform and of this record. The frequency grid is therefore finer than this resolution.
 constexpr std::size_t resolution = 2;
 /// Number of lines that are tested as oscillations in a search for causes.
 constexpr std::size_t looked_at_lines = 3;
@@ -31,29 +32,35 @@ constexpr std::size_t looked_at_lines = 3;
 /// oscillation.
 constexpr double highest_looked_at_hz = 0.5 / limits::search_interval_s;
 
-/// Common time grid of a campaign.
+/// Time grid of the transforms of all records. The first sample of each record is the first point of its
+/// grid.
 struct Grid {
-  double began_s = 0, interval_s = 0;
+  double interval_s = 0;
   std::size_t size = 0;
 };
 
-/// Returns a series of all records on the common time grid. A sample between two grid points is divided
-/// between both points; the nearer point gets the larger part. The accuracy is sufficient for a start value.
-/// @param series  one vector per record; NaN for samples without a value.
-std::vector<Complex> on_grid(const Grid& grid, const std::vector<Record>& records,
-                             const std::vector<std::vector<double>>& series) {
+Grid grid_of(const std::vector<Record>& records) {
+  double longest_s = 0, interval_s = std::numeric_limits<double>::infinity();
+  for (const Record& record : records) {
+    longest_s = std::max(longest_s, record.length_s());
+    interval_s = std::min(interval_s, record.mean_interval_s());
+  }
+  return {interval_s, std::bit_ceil(resolution * static_cast<std::size_t>(longest_s / interval_s) + 4)};
+}
+
+/// Returns a series of a record on the time grid. A sample between two grid points is divided between both
+/// points; the nearer point gets the larger part. The accuracy is sufficient for a start value.
+/// @param series  one value per sample; NaN for samples without a value.
+std::vector<Complex> on_grid(const Grid& grid, const Record& record, const std::vector<double>& series) {
   std::vector<Complex> x(grid.size);
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    for (std::size_t i = 0; i < records[k].size(); ++i) {
-      if (std::isnan(series[k][i])) continue;
-      const double place =
-          (records[k].campaign_time_s + records[k].time_s[i] - grid.began_s) / grid.interval_s;
-      const auto below = static_cast<std::size_t>(std::max(0.0, place));
-      const double share = place - static_cast<double>(below);
-      if (below + 1 >= grid.size) continue;
-      x[below] += (1 - share) * series[k][i];
-      x[below + 1] += share * series[k][i];
-    }
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (std::isnan(series[i])) continue;
+    const double place = (record.time_s[i] - record.time_s.front()) / grid.interval_s;
+    const auto below = static_cast<std::size_t>(std::max(0.0, place));
+    const double share = place - static_cast<double>(below);
+    if (below + 1 >= grid.size) continue;
+    x[below] += (1 - share) * series[i];
+    x[below + 1] += share * series[i];
   }
   return x;
 }
@@ -66,9 +73,12 @@ std::vector<Complex> spectrum_of(std::vector<Complex> x, std::size_t bins) {
   return transformed;
 }
 
-std::vector<double> power_of(const std::vector<Complex>& spectrum) {
-  std::vector<double> power;
-  for (const Complex& each : spectrum) power.push_back(std::norm(each));
+/// Returns the sum of the power spectra.
+std::vector<double> power_of(const std::vector<std::vector<Complex>>& spectra) {
+  std::vector<double> power(spectra.front().size());
+  for (const std::vector<Complex>& spectrum : spectra) {
+    for (std::size_t b = 0; b < power.size(); ++b) power[b] += std::norm(spectrum[b]);
+  }
   return power;
 }
 
@@ -87,73 +97,158 @@ std::vector<std::vector<double>> drives_of(const std::vector<Record>& records) {
   return drives;
 }
 
-/// Returns the ratio of the power in a bin to the median power of its neighbourhood.
-double ratio_at(const std::vector<double>& power, std::size_t bin) {
-  const std::size_t first = bin > around ? bin - around : 1;
-  const std::size_t last = std::min(power.size(), bin + around);
-  std::vector<double> near(power.begin() + static_cast<long>(first), power.begin() + static_cast<long>(last));
-  return power[bin] / (median_of(std::span(near)) + 1e-300);
-}
-
-/// Returns true if the drive has a line at this frequency whose ratio is at least half of `ratio`. The
-/// residual may then be a response to the drive.
-bool is_in_drive(const std::vector<double>& drive_power, std::size_t bin, double ratio) {
-  for (std::size_t b = bin - resolution; b <= std::min(bin + resolution, drive_power.size() - 1); ++b) {
-    if (ratio_at(drive_power, b) >= limits::majority_share * ratio) return true;
+/// Spectra of the residual and of the drive, up to the highest frequency of a line.
+class Spectra {
+ public:
+  Spectra(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm)
+      : records_(records),
+        grid_(grid_of(records)),
+        around_(std::max(narrowest_around, widest_around / records.size())) {
+    const double highest_hz = std::min(0.45 / grid_.interval_s, highest_looked_at_hz);
+    const std::size_t bins = std::min(grid_.size / 2, static_cast<std::size_t>(highest_hz / step_hz()));
+    const auto transformed = [&](const std::vector<std::vector<double>>& series) {
+      std::vector<std::vector<Complex>> spectra;
+      for (std::size_t k = 0; k < records.size(); ++k)
+        spectra.push_back(spectrum_of(on_grid(grid_, records[k], series[k]), bins));
+      return spectra;
+    };
+    residual_ = transformed(residual_mm);
+    power_ = power_of(residual_);
+    drive_power_ = power_of(transformed(drives_of(records)));
+    for (const std::vector<double>& r : residual_mm) readings_ += static_cast<double>(finite_count(r));
   }
-  return false;
-}
 
-/// Returns two numbers for each local maximum of the spectrum: the ratio of its power to the median power of
-/// its neighbourhood, and its bin. The list is sorted by the ratio, the largest first. A slow model error has
-/// no large ratio, because it increases the power of its neighbourhood too.
-std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& power, std::size_t lowest) {
-  std::vector<std::pair<double, std::size_t>> peaks;
-  for (std::size_t b = std::max(resolution, lowest); b + 1 < power.size(); ++b) {
-    if (power[b] >= power[b - 1] && power[b] >= power[b + 1]) peaks.emplace_back(ratio_at(power, b), b);
+  /// A local maximum of the spectrum. `ratio` is the ratio of its power to the median power of its
+  /// neighbourhood. A slow model error has no large ratio, because it increases the power of its
+  /// neighbourhood too.
+  struct Peak {
+    double ratio = 0;
+    std::size_t bin = 0;
+    auto operator<=>(const Peak&) const = default;
+  };
+
+  /// Returns the peaks of the residual that are no response to the drive, the largest ratio first.
+  /// @param most  largest number of peaks.
+  [[nodiscard]] std::vector<Peak> peaks(std::size_t most) const {
+    std::vector<Peak> all;
+    for (std::size_t b = lowest_bin(); b + 1 < power_.size(); ++b) {
+      if (power_[b] >= power_[b - 1] && power_[b] >= power_[b + 1]) all.push_back({ratio_at(power_, b), b});
+    }
+    std::sort(all.rbegin(), all.rend());
+    std::vector<Peak> kept;
+    for (const Peak& peak : all) {
+      if (kept.size() == most) break;
+      if (!is_in_drive(peak)) kept.push_back(peak);
+    }
+    return kept;
   }
-  std::sort(peaks.rbegin(), peaks.rend());
-  return peaks;
-}
+
+  /// Returns the probability that noise alone causes such a peak at any frequency. The power of noise in a
+  /// bin, divided by its mean, is the sum of one exponential variable per record.
+  [[nodiscard]] double chance_of(const Peak& peak) const {
+    const auto count = static_cast<double>(residual_.size());
+    const double median =
+        count - 1.0 / 3;  // of a gamma variable with this shape; for 1 record: 0.67, not 0.69
+    const double sum = peak.ratio * median;
+    double term = std::exp(-sum), tail = term;
+    for (std::size_t j = 1; j < residual_.size(); ++j) tail += term *= sum / static_cast<double>(j);
+    return tail * static_cast<double>(power_.size());
+  }
+
+  [[nodiscard]] double frequency_hz(const Peak& peak) const {
+    return step_hz() * static_cast<double>(peak.bin);
+  }
+
+  /// Returns the phase of the residual at the centre of a record, at the frequency of the peak [rad].
+  [[nodiscard]] double phase_at_centre(const Peak& peak, std::size_t record) const {
+    return std::arg(residual_[record][peak.bin]) + turn(peak, 0.5 * records_[record].length_s());
+  }
+
+  [[nodiscard]] Line line_at(const Peak& peak) const {
+    // The transform of a record begins at its first sample.
+    Complex sum = 0;
+    for (std::size_t k = 0; k < residual_.size(); ++k) {
+      const Record& r = records_[k];
+      const double begin_s = r.campaign_time_s + r.time_s.front() + r.oscillation_shift_s;
+      sum += residual_[k][peak.bin] * std::polar(1.0, -turn(peak, begin_s));
+    }
+    const Complex amplitude = 2 / readings_ * sum;
+    return {frequency_hz(peak), -amplitude.imag(), amplitude.real()};
+  }
+
+ private:
+  [[nodiscard]] double step_hz() const { return 1 / (grid_.interval_s * static_cast<double>(grid_.size)); }
+  [[nodiscard]] double turn(const Peak& peak, double time_s) const {
+    return 2 * std::numbers::pi * frequency_hz(peak) * time_s;
+  }
+
+  [[nodiscard]] std::size_t lowest_bin() const {
+    double campaign_s = 0;
+    for (const Record& record : records_) campaign_s += record.length_s();
+    return std::max(resolution,
+                    static_cast<std::size_t>(std::ceil(slowest_oscillation_hz(campaign_s) / step_hz())));
+  }
+
+  /// Returns the ratio of the power in a bin to the median power of its neighbourhood.
+  [[nodiscard]] double ratio_at(const std::vector<double>& power, std::size_t bin) const {
+    const std::size_t first = bin > around_ ? bin - around_ : 1;
+    const std::size_t last = std::min(power.size(), bin + around_);
+    std::vector<double> near(power.begin() + static_cast<long>(first),
+                             power.begin() + static_cast<long>(last));
+    return power[bin] / (median_of(std::span(near)) + 1e-300);
+  }
+
+  /// Returns true if the drive has a line at this frequency whose ratio is at least half of that of the peak.
+  /// The residual may then be a response to the drive.
+  [[nodiscard]] bool is_in_drive(const Peak& peak) const {
+    const std::size_t last = std::min(peak.bin + resolution, drive_power_.size() - 1);
+    for (std::size_t b = peak.bin - resolution; b <= last; ++b) {
+      if (ratio_at(drive_power_, b) >= limits::majority_share * peak.ratio) return true;
+    }
+    return false;
+  }
+
+  const std::vector<Record>& records_;
+  Grid grid_;
+  std::size_t around_;
+  std::vector<std::vector<Complex>> residual_;  ///< one spectrum per record
+  std::vector<double> power_, drive_power_;
+  double readings_ = 0;
+};
 
 }  // namespace
 
 std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm) {
-  double length_s = 0, interval_s = std::numeric_limits<double>::infinity();
-  for (const Record& record : records) {
-    length_s += record.length_s();
-    interval_s = std::min(interval_s, record.mean_interval_s());
-  }
-  const double campaign_s = records.back().campaign_time_s + records.back().time_s.back() -
-                            records.front().campaign_time_s - records.front().time_s.front();
-  const Grid grid{records.front().campaign_time_s + records.front().time_s.front(), interval_s,
-                  std::bit_ceil(resolution * static_cast<std::size_t>(campaign_s / interval_s) + 4)};
-  const double step_hz = 1 / (interval_s * static_cast<double>(grid.size));
-  const double highest_hz = std::min(0.45 / interval_s, highest_looked_at_hz);
-  const double lowest_hz = slowest_oscillation_hz(length_s);
-  const std::size_t bins = std::min(grid.size / 2, static_cast<std::size_t>(highest_hz / step_hz));
-  const std::vector<Complex> transformed = spectrum_of(on_grid(grid, records, residual_mm), bins);
-  const std::vector<double> drive_power =
-      power_of(spectrum_of(on_grid(grid, records, drives_of(records)), bins));
-  const auto peaks =
-      peaks_of(power_of(transformed), static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
-  double readings = 0;
-  for (const auto& r : residual_mm) {
-    for (const double value : r) readings += std::isnan(value) ? 0 : 1;
-  }
+  const Spectra spectra(records, residual_mm);
   std::vector<Line> lines;
-  for (const auto& [ratio, bin] : peaks) {
-    if (lines.size() == looked_at_lines) break;
-    if (is_in_drive(drive_power, bin, ratio)) continue;
-    const double frequency_hz = step_hz * static_cast<double>(bin);
-    // The phase is corrected for different time origins. The transform begins at the first sample, and the
-    // oscillation is defined from the start of the campaign.
-    const Complex amplitude = 2 / readings * transformed[bin] *
-                              std::polar(1.0, -2 * std::numbers::pi * frequency_hz * grid.began_s);
-    lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});
-  }
+  for (const Spectra::Peak& peak : spectra.peaks(looked_at_lines)) lines.push_back(spectra.line_at(peak));
   return lines;
+}
+
+std::vector<double> oscillation_shifts_s(const std::vector<Record>& records,
+                                         const std::vector<std::vector<double>>& residual_mm) {
+  std::vector<double> shifts_s(records.size(), 0.0);
+  if (records.size() < 2) return shifts_s;
+  const Spectra spectra(records, residual_mm);
+  const std::vector<Spectra::Peak> strongest = spectra.peaks(1);
+  if (strongest.empty() || spectra.chance_of(strongest.front()) >= 1 - limits::strict_probability)
+    return shifts_s;
+  const Spectra::Peak& peak = strongest.front();
+  const auto centre_s = [&](std::size_t k) {
+    return records[k].campaign_time_s + 0.5 * (records[k].time_s.front() + records[k].time_s.back());
+  };
+  constexpr double circle = 2 * std::numbers::pi;
+  const double first = spectra.phase_at_centre(peak, 0);
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    const double ahead = std::remainder(spectra.phase_at_centre(peak, k) - first, circle);
+    shifts_s[k] = centre_s(0) - centre_s(k) + ahead / (circle * spectra.frequency_hz(peak));
+  }
+  return shifts_s;
+}
+
+void set_oscillation_shifts(std::vector<Record>& records, const std::vector<double>& shifts_s) {
+  for (std::size_t k = 0; k < records.size(); ++k) records[k].oscillation_shift_s = shifts_s[k];
 }
 
 }  // namespace softgrip::sysid

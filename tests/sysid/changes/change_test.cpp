@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <random>
 
 #include "base/numbers.h"
@@ -113,6 +114,23 @@ TEST(Change, SaturatedSensorWithLowNoiseHasNoOutliers) {
   ASSERT_TRUE(d) << d.error();
   ASSERT_FALSE(d->causes.empty());
   for (const ChangeCause& cause : d->causes) EXPECT_NE(cause.id, "outliers") << change_sentence(*d);
+}
+
+// The oscillation does not begin with the log, so its phases in the two later logs are opposite.
+TEST(Change, AnOscillationHasItsSizeAlthoughItsPhaseDiffersBetweenLogs) {
+  constexpr double amplitude_mm = 0.1, frequency_hz = 3.3;
+  std::vector<Log> later = logs_of({}, 5);
+  for (std::size_t k = 0; k < later.size(); ++k) {
+    for (std::size_t i = 0; i < later[k].size(); ++i)
+      later[k].displacement_mm[i] +=
+          amplitude_mm *
+          std::sin(2 * std::numbers::pi * frequency_hz * later[k].time_s[i] + 3.0 * static_cast<double>(k));
+  }
+  const auto d = diagnose_change(logs_of({}, 1), later);
+  ASSERT_TRUE(d) << d.error();
+  ASSERT_EQ(d->causes.size(), 1U) << change_sentence(*d);
+  EXPECT_EQ(d->causes[0].id, "periodic_disturbance") << change_sentence(*d);
+  EXPECT_NEAR(d->causes[0].size.value, amplitude_mm, 0.1 * amplitude_mm);
 }
 
 TEST(Change, ReadingAheadOfTheCommandIsAClockOffset) {

@@ -17,9 +17,14 @@ struct Campaign {
   std::vector<std::vector<double>> residual_mm;
 };
 
-/// Returns two records of 60 s with an oscillation and noise. The phase of the oscillation is continuous from
-/// the first record to the second one. The drive oscillates with another frequency.
-Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s, double drive_hz = 0.45) {
+/// Half of the frequency resolution of a record of 60 s.
+constexpr double half_resolution_hz = 0.5 / 60;
+
+/// Returns two records of 60 s with an oscillation and noise. The drive oscillates with another frequency.
+/// @param ahead  phase by which the oscillation of the second record is ahead of a continuation of the first
+/// record [rad].
+Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s, double drive_hz = 0.45,
+                  double ahead = 0) {
   Campaign c;
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> off(-jitter_s, jitter_s);
@@ -31,7 +36,7 @@ Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s, dou
       record.time_s.push_back(0.01 * i + (jitter_s > 0 && i > 0 ? off(random) : 0));
       const double t = record.campaign_time_s + record.time_s.back();
       record.drive_kpa.push_back(30 - 30 * std::cos(2 * std::numbers::pi * drive_hz * t));
-      residual.push_back(amplitude_mm * std::sin(2 * std::numbers::pi * frequency_hz * t + 0.7) +
+      residual.push_back(amplitude_mm * std::sin(2 * std::numbers::pi * frequency_hz * t + 0.7 + ahead * k) +
                          0.04 * normal_at(9, std::uint64_t{6000} * static_cast<std::uint64_t>(k) +
                                                  static_cast<std::uint64_t>(i)));
     }
@@ -41,36 +46,70 @@ Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s, dou
   return c;
 }
 
-TEST(SpectrumPeaks, FindsAWeakOscillationWithinHalfTheResolution) {
-  for (const double frequency_hz : {0.73, 3.21, 17.7}) {
-    const Campaign c = campaign(frequency_hz, 0.01, 0);
-    const auto peaks = spectrum_peaks(c.records, c.residual_mm);
-    ASSERT_FALSE(peaks.empty());
-    EXPECT_NEAR(peaks.front().frequency_hz, frequency_hz, 1.0 / 120 / 2) << frequency_hz;
-  }
-}
-
-TEST(SpectrumPeaks, StrongestLineRemoves65PercentOfTheMeanSquare) {
-  // If the spectral line is subtracted from the residual, at least 65 % of the mean square must disappear.
-  Campaign c = campaign(3.21, 0.2, 0);
+/// Returns the share of the mean square that remains if the strongest line is subtracted from the residual.
+double share_left(const Campaign& c) {
   const Line line = spectrum_peaks(c.records, c.residual_mm).front();
   double before = 0, after = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
+  for (std::size_t k = 0; k < c.records.size(); ++k) {
     for (std::size_t i = 0; i < c.residual_mm[k].size(); ++i) {
       const double turn =
-          2 * std::numbers::pi * line.frequency_hz * (c.records[k].campaign_time_s + c.records[k].time_s[i]);
+          2 * std::numbers::pi * line.frequency_hz *
+          (c.records[k].campaign_time_s + c.records[k].time_s[i] + c.records[k].oscillation_shift_s);
       const double r = c.residual_mm[k][i];
       before += r * r;
       after += std::pow(r - line.sine_mm * std::sin(turn) - line.cosine_mm * std::cos(turn), 2);
     }
   }
-  EXPECT_LT(after, 0.35 * before);
+  return after / before;
+}
+
+TEST(SpectrumPeaks, FindsAWeakOscillationWithinHalfTheResolution) {
+  for (const double frequency_hz : {0.73, 3.21, 17.7}) {
+    for (const double ahead : {0.0, 2.0, std::numbers::pi}) {
+      const Campaign c = campaign(frequency_hz, 0.01, 0, 0.45, ahead);
+      const auto peaks = spectrum_peaks(c.records, c.residual_mm);
+      ASSERT_FALSE(peaks.empty());
+      EXPECT_NEAR(peaks.front().frequency_hz, frequency_hz, half_resolution_hz) << frequency_hz;
+    }
+  }
+}
+
+TEST(SpectrumPeaks, StrongestLineRemoves65PercentOfTheMeanSquare) {
+  Campaign one = campaign(3.21, 0.2, 0);
+  one.records.pop_back();
+  one.residual_mm.pop_back();
+  EXPECT_LT(share_left(one), 0.35);
+}
+
+TEST(OscillationShifts, OneLineDescribesRecordsWithDifferentPhases) {
+  for (const double ahead : {0.0, 1.0, 2.5, -2.0, std::numbers::pi}) {
+    Campaign c = campaign(3.21, 0.2, 0, 0.45, ahead);
+    set_oscillation_shifts(c.records, oscillation_shifts_s(c.records, c.residual_mm));
+    EXPECT_LT(share_left(c), 0.35) << ahead;
+  }
+}
+
+TEST(OscillationShifts, TheCentresOfTheRecordsAreAtMostHalfAPeriodApart) {
+  const Campaign c = campaign(3.21, 0.2, 0, 0.45, 2.0);
+  const std::vector<double> shifts_s = oscillation_shifts_s(c.records, c.residual_mm);
+  ASSERT_EQ(shifts_s.size(), 2U);
+  EXPECT_EQ(shifts_s[0], 0);
+  EXPECT_NEAR(shifts_s[1], -60, 0.5 / 3.21 + 1e-9);
+}
+
+TEST(OscillationShifts, AreZeroForNoiseAndForOneRecord) {
+  Campaign noise = campaign(3.21, 0, 0);
+  EXPECT_EQ(oscillation_shifts_s(noise.records, noise.residual_mm), (std::vector<double>{0, 0}));
+  Campaign one = campaign(3.21, 0.2, 0);
+  one.records.pop_back();
+  one.residual_mm.pop_back();
+  EXPECT_EQ(oscillation_shifts_s(one.records, one.residual_mm), std::vector<double>{0});
 }
 
 TEST(SpectrumPeaks, FrequencyIsFoundDespiteIrregularSamplesAndGaps) {
   Campaign c = campaign(2.4, 0.02, 0.004);
   for (std::size_t i = 1000; i < 1200; ++i) c.residual_mm[0][i] = std::nan("");
-  EXPECT_NEAR(spectrum_peaks(c.records, c.residual_mm).front().frequency_hz, 2.4, 1.0 / 120 / 2);
+  EXPECT_NEAR(spectrum_peaks(c.records, c.residual_mm).front().frequency_hz, 2.4, half_resolution_hz);
 }
 
 TEST(SpectrumPeaks, SlowZeroDriftIsNoOscillation) {

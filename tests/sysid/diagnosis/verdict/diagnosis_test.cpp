@@ -61,6 +61,33 @@ TEST(Diagnosis, SmallResidualStartsNoSearchForAnotherStructure) {
   }
 }
 
+// A disturbance, for example a pump, runs independently of the rig, so it begins each log with another phase.
+TEST(Diagnosis, AnOscillationIsNamedAlthoughItsPhaseDiffersBetweenLogs) {
+  constexpr double amplitude_mm = 0.1, frequency_hz = 3.3;
+  const model::Model given = loaded("bench_twin");
+  std::vector<Log> logs;
+  for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
+    Log log = simulated(given, signal, 25, noise_mm, 17);
+    const double phase = logs.empty() ? 0.3 : 0.3 + std::numbers::pi;
+    for (std::size_t i = 0; i < log.size(); ++i)
+      log.displacement_mm[i] +=
+          amplitude_mm * std::sin(2 * std::numbers::pi * frequency_hz * log.time_s[i] + phase);
+    logs.push_back(std::move(log));
+  }
+  const auto diagnosis = diagnose(logs, given, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  ASSERT_EQ(diagnosis->causes.size(), 1U);
+  const NamedCause& named = diagnosis->causes.front();
+  EXPECT_EQ(named.cause.id, "periodic_disturbance");
+  const auto value = [&](std::string_view name) {
+    const auto parameter = std::find_if(named.parameters.begin(), named.parameters.end(),
+                                        [&](const CauseParameter& p) { return p.name == name; });
+    return parameter == named.parameters.end() ? std::nan("") : parameter->value;
+  };
+  EXPECT_NEAR(std::hypot(value("sine_mm"), value("cosine_mm")), amplitude_mm, 0.1 * amplitude_mm);
+  EXPECT_NEAR(value("frequency_hz"), frequency_hz, 0.002);
+}
+
 // The log is simulated with the given model, so the model must explain the log. This must hold for every zero
 // offset of the sensor and for a log that starts in motion.
 TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
