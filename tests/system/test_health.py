@@ -179,7 +179,8 @@ class LastHealthResult(web.WebTest):
     def test_status_doctor_and_metrics_report_the_last_health_result(self):
         self.start_rig()
         told = self.start_web()
-        self.assertNotIn("health", self.softgrip("status").stdout)
+        self.assertNotIn("Possible cause", self.softgrip("status").stdout)
+        self.assertFalse(json.loads(self.softgrip("status", "--json").stdout).get("health"))
         self.assertNotIn("softgrip_health_state", told.ask("/metrics")[1])
         self.judge()
         self.assertIn("Possible cause: the pressure falls while it should be constant.", self.softgrip("status").stdout)
