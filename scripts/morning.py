@@ -57,7 +57,7 @@ def rounded(text):
     text = re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3}", "hh:mm:ss", text)
     text = re.sub(r"127\.0\.0\.1:\d+", "127.0.0.1:1502", text)
     text = re.sub(r"\d+ ms old", "fresh", text)
-    text = re.sub(r"(?<![\d.])(?<!every )-?\d+\.\d+(?= (kPa|mm|s|ms)\b)",
+    text = re.sub(r"(?<![\d.])(?<!every )(?<!outputs after )-?\d+\.\d+(?= (kPa|mm|s|ms)\b)",
                   lambda found: f"{float(found.group()):.0f}", text)
     return re.sub(r"-0(?= (kPa|mm))", "0", text)
 
@@ -147,6 +147,7 @@ def play():
             self.emulated.ask("fault cable")
             self.softgripd.wait_for_state("faulted")
             bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)
+            bench.wait_for("the watchdog", lambda: self.softgripd.status()["bus"]["failure_kind"] == "watchdog_tripped")
             bench.wait_for("readings to be old", lambda: all(
                 channel["validity"] == "stale" for channel in self.softgripd.status()["channels"]))
             self.show_status()
