@@ -49,18 +49,18 @@ class RegulatedPressure {
   [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
   [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
-  /// Returns the number of steps for a segment of the duration `segment_s`. A step is not longer than 5 ms,
-  /// or, for a regulator that needs more time, than 1/20 of the shorter of its two time constants. A segment
-  /// of more than 200 such steps is not divided further, because a regulator that is so fast is at rest in
-  /// most of the segment. However, a step is not longer than 1/20 of integral_s, because long steps would
-  /// make the integral unstable.
+  /// Returns the number of steps for a segment of the duration `segment_s`. The longest step is the largest
+  /// of three durations: 5 ms, 1/20 of the shorter time constant, and 1/200 of the segment. In a longer
+  /// segment, the regulator is at rest most of the time. The second and the third duration are limited to
+  /// 1/20 of integral_s, because longer steps would make the integral unstable. The errors of these steps are
+  /// not larger than those of a regulator with a time constant of 30 ms and steps of 5 ms. The largest number
+  /// of steps covers more than an hour.
   [[nodiscard]] int steps(double segment_s) const {
     constexpr double usual_step_s = 0.005, steps_per_constant = 20, enough_steps = 200, most_steps = 1e6;
-    const double filling_s = value_of(n_.filling_s), venting_s = value_of(n_.venting_s);
-    const double integral_s = value_of(n_.integral_s);
-    double longest_s = std::min(filling_s, venting_s) / steps_per_constant;
-    longest_s = std::max(longest_s, segment_s / enough_steps);
-    if (integral_s > 0) longest_s = std::min(longest_s, integral_s / steps_per_constant);
+    double longest_s = std::max(std::min(value_of(n_.filling_s), value_of(n_.venting_s)) / steps_per_constant,
+                                segment_s / enough_steps);
+    if (value_of(n_.integral_s) > 0)
+      longest_s = std::min(longest_s, value_of(n_.integral_s) / steps_per_constant);
     longest_s = std::max(longest_s, usual_step_s);
     return static_cast<int>(std::clamp(std::ceil(segment_s / longest_s - 1e-9), 1.0, most_steps));
   }
