@@ -76,10 +76,10 @@ class Judge {
       if (unevaluated_share > 1 - limits::probability)
         diagnosis.warnings.push_back(unfamiliar_commands(unevaluated_share));
     }
-    set_oscillation_shifts(later, oscillation_shifts_s(later, residuals));
+    const AlignedLines aligned = aligned_lines(later, residuals);
+    set_oscillation_shifts(later, aligned.shifts_s);
     const LaterReadings readings = readings_of(base_, later, residuals);
-    const std::vector<Effect> effects =
-        effects_for(base_, later, spectrum_peaks(later, residuals), pressure_is_judged_);
+    const std::vector<Effect> effects = effects_for(base_, later, aligned.lines, pressure_is_judged_);
     JudgedChange judged;
     judged.judged = base_.judged;
     judged.base = base_.description;

@@ -80,7 +80,7 @@ struct Record {
   /// interval between the averaged readings.
   double finest_interval_s = 0;
   double campaign_time_s = 0;      ///< start of the record, relative to the start of the first log
-  double oscillation_shift_s = 0;  ///< see model::Surroundings and oscillation_shifts_s()
+  double oscillation_shift_s = 0;  ///< see model::Surroundings and aligned_lines()
   double span_mm = 0;              ///< range of the readings
   double largest_kpa = 0;          ///< largest magnitude of the drive
   double largest_before_kpa = 0;   ///< largest magnitude of the drive in all records of the campaign before

@@ -22,7 +22,7 @@ using Complex = std::complex<double>;
 
 /// Number of frequency bins on each side of a peak with which the peak is compared, for one record. With
 /// several records, the bins are wider and their powers are sums, so fewer bins are used.
-constexpr std::size_t widest_around = 60, narrowest_around = 10;
+constexpr std::size_t widest_around = 60;
 /// Number of bins per frequency resolution of the longest record. It is the ratio of the lengths of the
 /// transform and of this record. The frequency grid is therefore finer than this resolution.
 constexpr std::size_t resolution = 2;
@@ -103,7 +103,7 @@ class Spectra {
   Spectra(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm)
       : records_(records),
         grid_(grid_of(records)),
-        around_(std::max(narrowest_around, widest_around / records.size())) {
+        around_(std::max(limits::fewest_events / 2, widest_around / records.size())) {
     const double highest_hz = std::min(0.45 / grid_.interval_s, highest_looked_at_hz);
     const std::size_t bins = std::min(grid_.size / 2, static_cast<std::size_t>(highest_hz / step_hz()));
     const auto transformed = [&](const std::vector<std::vector<double>>& series) {
@@ -127,9 +127,9 @@ class Spectra {
     auto operator<=>(const Peak&) const = default;
   };
 
-  /// Returns the peaks of the residual that are no response to the drive, the largest ratio first.
-  /// @param most  largest number of peaks.
-  [[nodiscard]] std::vector<Peak> peaks(std::size_t most) const {
+  /// Returns the most significant peaks of the residual that are no response to the drive, the largest ratio
+  /// first.
+  [[nodiscard]] std::vector<Peak> peaks() const {
     std::vector<Peak> all;
     for (std::size_t b = lowest_bin(); b + 1 < power_.size(); ++b) {
       if (power_[b] >= power_[b - 1] && power_[b] >= power_[b + 1]) all.push_back({ratio_at(power_, b), b});
@@ -137,7 +137,7 @@ class Spectra {
     std::sort(all.rbegin(), all.rend());
     std::vector<Peak> kept;
     for (const Peak& peak : all) {
-      if (kept.size() == most) break;
+      if (kept.size() == looked_at_lines) break;
       if (!is_in_drive(peak)) kept.push_back(peak);
     }
     return kept;
@@ -147,16 +147,43 @@ class Spectra {
   /// bin, divided by its mean, is the sum of one exponential variable per record.
   [[nodiscard]] double chance_of(const Peak& peak) const {
     const auto count = static_cast<double>(residual_.size());
-    const double median =
-        count - 1.0 / 3;  // of a gamma variable with this shape; for 1 record: 0.67, not 0.69
+    // Median of a gamma variable with this shape; for 1 record 0.67 instead of 0.69.
+    const double median = count - 1.0 / 3;
     const double sum = peak.ratio * median;
     double term = std::exp(-sum), tail = term;
     for (std::size_t j = 1; j < residual_.size(); ++j) tail += term *= sum / static_cast<double>(j);
     return tail * static_cast<double>(power_.size());
   }
 
+  /// Returns the shift of each record with which the line at the peak has the same phase at the centre of
+  /// each record.
+  [[nodiscard]] std::vector<double> shifts_for(const Peak& peak) const {
+    constexpr double circle = 2 * std::numbers::pi;
+    std::vector<double> shifts_s(records_.size(), 0.0);
+    for (std::size_t k = 1; k < records_.size(); ++k) {
+      const double ahead = std::remainder(phase_at_centre(peak, k) - phase_at_centre(peak, 0), circle);
+      shifts_s[k] = centre_s(0) - centre_s(k) + ahead / (circle * frequency_hz(peak));
+    }
+    return shifts_s;
+  }
+
+  /// Returns the lines at the peaks. `shifts_s` contains the shift of each record.
+  [[nodiscard]] std::vector<Line> lines(const std::vector<Peak>& peaks,
+                                        const std::vector<double>& shifts_s) const {
+    std::vector<Line> lines;
+    for (const Peak& peak : peaks) lines.push_back(line_at(peak, shifts_s));
+    return lines;
+  }
+
+ private:
   [[nodiscard]] double frequency_hz(const Peak& peak) const {
     return step_hz() * static_cast<double>(peak.bin);
+  }
+
+  /// Returns the time of the centre of a record, from the start of the campaign [s].
+  [[nodiscard]] double centre_s(std::size_t record) const {
+    const Record& r = records_[record];
+    return r.campaign_time_s + 0.5 * (r.time_s.front() + r.time_s.back());
   }
 
   /// Returns the phase of the residual at the centre of a record, at the frequency of the peak [rad].
@@ -164,19 +191,18 @@ class Spectra {
     return std::arg(residual_[record][peak.bin]) + turn(peak, 0.5 * records_[record].length_s());
   }
 
-  [[nodiscard]] Line line_at(const Peak& peak) const {
+  [[nodiscard]] Line line_at(const Peak& peak, const std::vector<double>& shifts_s) const {
     // The transform of a record begins at its first sample.
     Complex sum = 0;
     for (std::size_t k = 0; k < residual_.size(); ++k) {
       const Record& r = records_[k];
-      const double begin_s = r.campaign_time_s + r.time_s.front() + r.oscillation_shift_s;
+      const double begin_s = r.campaign_time_s + r.time_s.front() + shifts_s[k];
       sum += residual_[k][peak.bin] * std::polar(1.0, -turn(peak, begin_s));
     }
     const Complex amplitude = 2 / readings_ * sum;
     return {frequency_hz(peak), -amplitude.imag(), amplitude.real()};
   }
 
- private:
   [[nodiscard]] double step_hz() const { return 1 / (grid_.interval_s * static_cast<double>(grid_.size)); }
   [[nodiscard]] double turn(const Peak& peak, double time_s) const {
     return 2 * std::numbers::pi * frequency_hz(peak) * time_s;
@@ -221,30 +247,21 @@ class Spectra {
 std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm) {
   const Spectra spectra(records, residual_mm);
-  std::vector<Line> lines;
-  for (const Spectra::Peak& peak : spectra.peaks(looked_at_lines)) lines.push_back(spectra.line_at(peak));
-  return lines;
+  std::vector<double> shifts_s;
+  for (const Record& record : records) shifts_s.push_back(record.oscillation_shift_s);
+  return spectra.lines(spectra.peaks(), shifts_s);
 }
 
-std::vector<double> oscillation_shifts_s(const std::vector<Record>& records,
-                                         const std::vector<std::vector<double>>& residual_mm) {
-  std::vector<double> shifts_s(records.size(), 0.0);
-  if (records.size() < 2) return shifts_s;
+AlignedLines aligned_lines(const std::vector<Record>& records,
+                           const std::vector<std::vector<double>>& residual_mm) {
   const Spectra spectra(records, residual_mm);
-  const std::vector<Spectra::Peak> strongest = spectra.peaks(1);
-  if (strongest.empty() || spectra.chance_of(strongest.front()) >= 1 - limits::strict_probability)
-    return shifts_s;
-  const Spectra::Peak& peak = strongest.front();
-  const auto centre_s = [&](std::size_t k) {
-    return records[k].campaign_time_s + 0.5 * (records[k].time_s.front() + records[k].time_s.back());
-  };
-  constexpr double circle = 2 * std::numbers::pi;
-  const double first = spectra.phase_at_centre(peak, 0);
-  for (std::size_t k = 1; k < records.size(); ++k) {
-    const double ahead = std::remainder(spectra.phase_at_centre(peak, k) - first, circle);
-    shifts_s[k] = centre_s(0) - centre_s(k) + ahead / (circle * spectra.frequency_hz(peak));
-  }
-  return shifts_s;
+  const std::vector<Spectra::Peak> peaks = spectra.peaks();
+  AlignedLines aligned{{}, std::vector<double>(records.size(), 0.0)};
+  if (records.size() > 1 && !peaks.empty() &&
+      spectra.chance_of(peaks.front()) < 1 - limits::strict_probability)
+    aligned.shifts_s = spectra.shifts_for(peaks.front());
+  aligned.lines = spectra.lines(peaks, aligned.shifts_s);
+  return aligned;
 }
 
 void set_oscillation_shifts(std::vector<Record>& records, const std::vector<double>& shifts_s) {

@@ -33,12 +33,18 @@ struct Line {
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                                const std::vector<std::vector<double>>& residual_mm);
 
-/// Returns Record::oscillation_shift_s for each record, so that the strongest line of the residual has the
-/// same phase at the centre of each record. With these shifts, one oscillation describes all records, and its
-/// frequency can be fitted without changing the relation of the phases. All shifts are 0 if there is one
-/// record, or if noise alone could cause the line with a probability of at least 1 - strict_probability.
-[[nodiscard]] std::vector<double> oscillation_shifts_s(const std::vector<Record>& records,
-                                                       const std::vector<std::vector<double>>& residual_mm);
+/// The strongest lines of a residual, and for each record the shift with which these lines are stated.
+struct AlignedLines {
+  std::vector<Line> lines;       ///< as spectrum_peaks() returns them
+  std::vector<double> shifts_s;  ///< Record::oscillation_shift_s for each record
+};
+
+/// Returns the lines of the residual, and shifts with which the strongest line has the same phase at the
+/// centre of each record. With these shifts, one oscillation describes all records, and its frequency can be
+/// fitted without changing the relation of the phases. All shifts are 0 if there is one record, or if noise
+/// alone could cause the line with a probability of at least 1 - strict_probability.
+[[nodiscard]] AlignedLines aligned_lines(const std::vector<Record>& records,
+                                         const std::vector<std::vector<double>>& residual_mm);
 
 /// Sets Record::oscillation_shift_s of each record.
 void set_oscillation_shifts(std::vector<Record>& records, const std::vector<double>& shifts_s);

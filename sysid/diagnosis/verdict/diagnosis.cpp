@@ -259,10 +259,10 @@ class Diagnostician {
   }
 
   Selection search(StructureFit recalibrated, const Division& division, AnotherBase& another) {
-    const std::vector<double> shifts_s = oscillation_shifts_s(data_.records, recalibrated.residual_mm);
+    AlignedLines aligned = aligned_lines(data_.records, recalibrated.residual_mm);
     for (std::vector<Record>* records : {&data_.records, &data_.thinned, &data_.glimpsed})
-      set_oscillation_shifts(*records, shifts_s);
-    data_.scales.residual_lines = spectrum_peaks(data_.records, recalibrated.residual_mm);
+      set_oscillation_shifts(*records, aligned.shifts_s);
+    data_.scales.residual_lines = std::move(aligned.lines);
     SelectionOptions options;
     options.seed = options_.seed;
     options.progress = options_.progress;

@@ -81,29 +81,33 @@ TEST(SpectrumPeaks, StrongestLineRemoves65PercentOfTheMeanSquare) {
   EXPECT_LT(share_left(one), 0.35);
 }
 
-TEST(OscillationShifts, OneLineDescribesRecordsWithDifferentPhases) {
+TEST(AlignedLines, OneLineDescribesRecordsWithDifferentPhases) {
   for (const double ahead : {0.0, 1.0, 2.5, -2.0, std::numbers::pi}) {
     Campaign c = campaign(3.21, 0.2, 0, 0.45, ahead);
-    set_oscillation_shifts(c.records, oscillation_shifts_s(c.records, c.residual_mm));
+    const AlignedLines aligned = aligned_lines(c.records, c.residual_mm);
+    set_oscillation_shifts(c.records, aligned.shifts_s);
     EXPECT_LT(share_left(c), 0.35) << ahead;
+    const Line of_records = spectrum_peaks(c.records, c.residual_mm).front();
+    EXPECT_EQ(aligned.lines.front().sine_mm, of_records.sine_mm) << ahead;
+    EXPECT_EQ(aligned.lines.front().cosine_mm, of_records.cosine_mm) << ahead;
   }
 }
 
-TEST(OscillationShifts, TheCentresOfTheRecordsAreAtMostHalfAPeriodApart) {
+TEST(AlignedLines, TheCentresOfTheRecordsAreAtMostHalfAPeriodApart) {
   const Campaign c = campaign(3.21, 0.2, 0, 0.45, 2.0);
-  const std::vector<double> shifts_s = oscillation_shifts_s(c.records, c.residual_mm);
+  const std::vector<double> shifts_s = aligned_lines(c.records, c.residual_mm).shifts_s;
   ASSERT_EQ(shifts_s.size(), 2U);
   EXPECT_EQ(shifts_s[0], 0);
   EXPECT_NEAR(shifts_s[1], -60, 0.5 / 3.21 + 1e-9);
 }
 
-TEST(OscillationShifts, AreZeroForNoiseAndForOneRecord) {
+TEST(AlignedLines, AreZeroForNoiseAndForOneRecord) {
   Campaign noise = campaign(3.21, 0, 0);
-  EXPECT_EQ(oscillation_shifts_s(noise.records, noise.residual_mm), (std::vector<double>{0, 0}));
+  EXPECT_EQ(aligned_lines(noise.records, noise.residual_mm).shifts_s, (std::vector<double>{0, 0}));
   Campaign one = campaign(3.21, 0.2, 0);
   one.records.pop_back();
   one.residual_mm.pop_back();
-  EXPECT_EQ(oscillation_shifts_s(one.records, one.residual_mm), std::vector<double>{0});
+  EXPECT_EQ(aligned_lines(one.records, one.residual_mm).shifts_s, std::vector<double>{0});
 }
 
 TEST(SpectrumPeaks, FrequencyIsFoundDespiteIrregularSamplesAndGaps) {
