@@ -30,7 +30,17 @@ end_computing_tests() {
 run_real_time_tests() {
   local preset=$1 without=$2
   shift 2
-  ctest --preset "$preset" -j $((5 * $(nproc))) -L '^realtime$' ${without:+-LE "^($without)\$"} --repeat until-pass:2 "$@"
+  ctest --preset "$preset" -j $((5 * $(nproc))) -L '^realtime$' ${without:+-LE "^($without)\$"} --repeat until-pass:2 "$@" \
+    | tee "build/$preset-real-time.log"
+}
+
+# list_failed_tests PRESET  prints the names of the failed tests of both groups. Their output is several thousand
+# lines earlier.
+list_failed_tests() {
+  local group
+  for group in real-time computing; do
+    sed -n '/^The following tests FAILED:/,/^Errors while running/p' "build/$1-$group.log"
+  done
 }
 
 # run_ctest PRESET LABELS [CTEST OPTION ...]  runs both groups of tests

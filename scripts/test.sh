@@ -46,7 +46,7 @@ build release
 
 if $quick; then
   say "test"
-  run_ctest release 'blind|system|recipe|campaign|long'
+  run_ctest release 'blind|system|recipe|campaign|long' || { list_failed_tests release >&2; exit 1; }
   say "done"
   exit 0
 fi
@@ -72,7 +72,7 @@ wait $sanitized || { tail -n 40 build/sanitize.log >&2; exit 1; }
 $all || bash scripts/sanitize.sh
 say "other tests"
 end_computing_tests release || failed=true
-! $failed || exit 1
+if $failed; then list_failed_tests release >&2; exit 1; fi
 if $all; then
   bash scripts/sanitize.sh all
   say "clang-tidy: every source"
