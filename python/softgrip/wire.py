@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 import time
 from collections.abc import Mapping
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError
 from .session import LONGEST_LINE, Session
@@ -21,7 +21,7 @@ class Wire:
     def __init__(self, path: str, end: float) -> None:
         self.path = path
         self.torn = False
-        self._input = b""
+        self._input = bytearray()
         self._socket: Optional[socket.socket] = _connected(path, end)
 
     def close(self) -> None:
@@ -42,17 +42,21 @@ class Wire:
 
     def read(self, session: Session, end: float) -> None:
         """Receives bytes until at least one line is complete, and processes the complete lines."""
-        while b"\n" not in self._input:
-            self._receive(session, end)
+        received: Union[bytes, bytearray] = self._input
+        while b"\n" not in received:
+            if len(self._input) > LONGEST_LINE:
+                self.close()
+                raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes")
+            received = self._receive(session, end)
         *lines, self._input = self._input.split(b"\n")
         try:
             for line in lines:
-                session.receive(line)
+                session.receive(bytes(line))
         except ProtocolError:
             self.close()
             raise
 
-    def _receive(self, session: Session, end: float) -> None:
+    def _receive(self, session: Session, end: float) -> bytes:
         try:
             data = self._ready(end).recv(1 << 16)
         except socket.timeout as error:
@@ -62,9 +66,7 @@ class Wire:
         if not data:
             raise self._lost(session, None)
         self._input += data
-        if len(self._input) > LONGEST_LINE and b"\n" not in self._input:
-            self.close()
-            raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes")
+        return data
 
     def _send(self, session: Session, line: bytes, end: float) -> None:
         if self.torn:
