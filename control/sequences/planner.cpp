@@ -85,6 +85,9 @@ class Window {
     return u;
   }
 
+  /// Returns the number of iterations of all searches.
+  [[nodiscard]] int iterations() const noexcept { return most_iterations_of_window - iterations_left_; }
+
   /// Returns the factor by which the commands `u` must be scaled so that their response fits the target.
   /// Within a window, the gain of a finger with slow creep is much smaller than its settled gain.
   [[nodiscard]] double share_needed(const Vector& u) const {
@@ -292,6 +295,7 @@ PressurePlan Planner::plan(const Reference& reference, double from_s, double to_
     const double before = past_kpa_.size() > 1 ? past_kpa_[past_kpa_.size() - 2] : command_kpa();
     Window window(chain, {command_kpa(), before}, std::move(wanted), limits_, step_s_);
     const Vector u = best_of(window, guess, proportional);
+    result.iterations += window.iterations();
     const std::size_t now = std::min(keep, points - done);
     for (std::size_t i = 0; i < now; ++i) {
       add_point(u[static_cast<Eigen::Index>(i)], chain, result);
