@@ -58,15 +58,14 @@ class Window {
     double cost = cost_of(u);
     double damping = 1e-4;
     for (int i = 0; i < most_iterations && iterations_left_ > 0; ++i, --iterations_left_) {
-      Matrix normal;
-      Vector gradient;
-      linearise(u, normal, gradient);
+      linearise(u);
       bool better = false;
       double last = cost;
       for (int attempt = 0; attempt < 12 && !better; ++attempt) {
-        Matrix damped = normal;
-        damped.diagonal().array() += damping;
-        const Vector next = u - damped.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
+        damped_ = normal_;
+        damped_.diagonal().array() += damping;
+        factors_.compute(damped_);
+        const Vector next = u - factors_.solve(gradient_);
         const double at_next = cost_of(next);
         better = at_next < cost;
         if (better) {
@@ -130,9 +129,10 @@ class Window {
     return std::max(0.0, change - rise_kpa_) + std::min(0.0, change + fall_kpa_);
   }
 
-  void linearise(const Vector& u, Matrix& normal, Vector& gradient) {
+  /// Computes the normal equations at the command `u`.
+  void linearise(const Vector& u) {
     const Eigen::Index n = u.size();
-    Matrix jacobian = Matrix::Zero(n, n);
+    jacobian_.setZero(n, n);
     Vector miss(n);
     model::Chain<double> chain = begin_;
     std::vector<model::Chain<double>> states;
@@ -150,18 +150,18 @@ class Window {
       const double aside = std::copysign(aside_kpa, u[j] - before(u, j - 1));
       for (Eigen::Index i = j; i < n; ++i) {
         other.step(step_s_, u[i] + aside);
-        jacobian(i, j) = (other.after(model::Station::load) - wanted_mm_[i] - miss[i]) / aside;
+        jacobian_(i, j) = (other.after(model::Station::load) - wanted_mm_[i] - miss[i]) / aside;
       }
     }
-    for (Eigen::Index j = 0; j + 1 < n; ++j) jacobian.col(j) -= jacobian.col(j + 1);
-    normal = Matrix::Zero(n, n);
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
-    gradient = jacobian.transpose() * miss;
-    add_rows(u, normal, gradient);
+    for (Eigen::Index j = 0; j + 1 < n; ++j) jacobian_.col(j) -= jacobian_.col(j + 1);
+    normal_.setZero(n, n);
+    normal_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
+    gradient_.noalias() = jacobian_.transpose() * miss;
+    add_rows(u);
   }
 
   /// Adds the terms for the smoothness and for the bounds of the command to the normal equations.
-  void add_rows(const Vector& u, Matrix& normal, Vector& gradient) const {
+  void add_rows(const Vector& u) {
     constexpr double smooth = smooth_mm_per_kpa * smooth_mm_per_kpa;
     constexpr double bound = bound_mm_per_kpa * bound_mm_per_kpa;
     constexpr std::array<double, 3> bend{1, -2, 1};
@@ -169,22 +169,22 @@ class Window {
       const double bent = u[i] - 2 * before(u, i - 1) + before(u, i - 2);
       for (Eigen::Index a = 0; a < 3 && i - a >= 0; ++a) {
         const auto at = static_cast<std::size_t>(a);
-        gradient[i - a] += smooth * bend[at] * bent;
+        gradient_[i - a] += smooth * bend[at] * bent;
         for (Eigen::Index b = a; b < 3 && i - b >= 0; ++b) {
-          normal(i - a, i - b) += smooth * bend[at] * bend[static_cast<std::size_t>(b)];
+          normal_(i - a, i - b) += smooth * bend[at] * bend[static_cast<std::size_t>(b)];
         }
       }
       if (const double out = outside(u[i]); out != 0) {
-        gradient[i] += bound * out;
-        normal(i, i) += bound;
+        gradient_[i] += bound * out;
+        normal_(i, i) += bound;
       }
       if (const double fast = too_fast(u[i] - before(u, i - 1)); fast != 0) {
-        gradient[i] += bound * fast;
-        normal(i, i) += bound;
+        gradient_[i] += bound * fast;
+        normal_(i, i) += bound;
         if (i > 0) {
-          gradient[i - 1] -= bound * fast;
-          normal(i - 1, i - 1) += bound;
-          normal(i, i - 1) -= bound;
+          gradient_[i - 1] -= bound * fast;
+          normal_(i - 1, i - 1) += bound;
+          normal_(i, i - 1) -= bound;
         }
       }
     }
@@ -198,6 +198,10 @@ class Window {
   double rise_kpa_;
   double fall_kpa_;
   int iterations_left_ = most_iterations_of_window;
+  // The matrices keep their memory between iterations. To allocate them takes longer than to compute them.
+  Matrix jacobian_, normal_, damped_;
+  Vector gradient_;
+  Eigen::LDLT<Matrix, Eigen::Lower> factors_;
 };
 
 /// Searches from several initial guesses until the error of a command is below good_mm, and returns the
