@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
 from types import TracebackType
 from typing import Any, Optional, TypeVar
 
@@ -63,22 +63,21 @@ class AsyncGripper:
 
     async def _open(self) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
         try:
-            opened = asyncio.open_unix_connection(self.path, limit=LONGEST_LINE)
-            return await asyncio.wait_for(opened, self.answer_s)
+            return await _within(asyncio.open_unix_connection(self.path, limit=LONGEST_LINE), self.answer_s)
         except (OSError, asyncio.TimeoutError) as error:
             raise NoDaemon(f"{self.path}: {error}") from error
 
     async def _hang_up(self) -> None:
-        if self._reading:
-            self._reading.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await self._reading
-        self._reading = None
-        if self._writer:
-            self._writer.close()
+        reading, self._reading = self._reading, None
+        writer, self._writer = self._writer, None
+        if writer:
+            writer.close()
+        if reading:
+            reading.cancel()
+            await asyncio.wait({reading})
+        if writer:
             with contextlib.suppress(OSError):
-                await self._writer.wait_closed()
-        self._writer = None
+                await writer.wait_closed()
 
     async def status(self) -> Status:
         return Status.of(await self.ask("status"), "status")
@@ -161,7 +160,7 @@ class AsyncGripper:
         reader, writer = await self._open()
         try:
             writer.write(line)
-            await asyncio.wait_for(self._take_until(reader, session, number), self.answer_s)
+            await _within(self._take_until(reader, session, number), self.answer_s)
         except asyncio.TimeoutError:
             raise NotAnswered(f"{self.path}: time limit exceeded") from None
         except OSError as error:
@@ -195,7 +194,7 @@ class AsyncGripper:
                 raise self._session.failure or ConnectionLost(f"{self.path}: the daemon closed the connection")
             left = end - asyncio.get_running_loop().time()
             try:
-                await asyncio.wait_for(self._changed.wait(), max(left, 0))
+                await _within(self._changed.wait(), max(left, 0))
             except asyncio.TimeoutError:
                 raise NotAnswered(f"{self.path}: time limit exceeded") from None
 
@@ -214,3 +213,18 @@ class AsyncGripper:
         """Wakes all tasks that are waiting."""
         self._changed.set()
         self._changed = asyncio.Event()
+
+
+async def _within(work: Coroutine[Any, Any, T], timeout_s: float) -> T:
+    """Returns the result of `work`. Raises asyncio.TimeoutError after `timeout_s` seconds. Before Python 3.12,
+    asyncio.wait_for() ignores a cancellation, for example by Ctrl-C, at the moment at which the result arrives. The
+    program and its sequence would then continue."""
+    task = asyncio.ensure_future(work)
+    try:
+        await asyncio.wait({task}, timeout=timeout_s)
+        if task.done():
+            return task.result()
+        raise asyncio.TimeoutError
+    finally:
+        if not task.cancel() and not task.cancelled():
+            task.exception()  # asyncio reports an exception that nobody has read

@@ -1,0 +1,75 @@
+"""Tests that the asyncio client ends when its task is cancelled, and that it first stops its sequence. A daemon is
+imitated in the same event loop, so the order of events is the same in each run."""
+
+import asyncio
+import contextlib
+import json
+import pathlib
+import tempfile
+import unittest
+
+import package  # noqa: F401
+import softgrip
+from test_malformed import RESULTS
+
+# Largest number of steps of the event loop before the cancellation. The program ends before this step.
+MOST_STEPS = 150
+
+
+class Daemon:
+    """Answers each request, and stores the requests."""
+
+    def __init__(self):
+        self.requests = []
+
+    async def serve(self, reader, writer):
+        with contextlib.suppress(ConnectionError):
+            while line := await reader.readline():
+                request = json.loads(line)
+                self.requests.append(request["command"])
+                result = RESULTS.get(request["command"], ({}, None))[0]
+                writer.write(json.dumps({"id": request["id"], "ok": True, "result": result}).encode() + b"\n")
+        writer.close()
+
+
+class Cancellation(unittest.TestCase):
+    def test_a_cancelled_program_ends_and_stops_its_sequence_at_each_step(self):
+        stopped = ended = 0
+        for steps in range(MOST_STEPS):
+            with self.subTest(steps=steps):
+                cancelled, requests = asyncio.run(self.cancelled_after(steps))
+                if not cancelled:
+                    ended += 1
+                    continue
+                self.assertEqual(requests.count("stop"), requests.count("start"), requests)
+                stopped += requests.count("stop")
+        self.assertGreater(stopped, 5, "too few cancellations while the sequence ran")
+        self.assertGreater(ended, 5, "the last cancellations must come after the end of the program")
+
+    async def cancelled_after(self, steps):
+        """Returns True if the program was cancelled, or False if it had already ended; and the requests."""
+        daemon = Daemon()
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder) / "daemon.sock")
+            server = await asyncio.start_unix_server(daemon.serve, path)
+            program = asyncio.create_task(self.program(path))
+            for _ in range(steps):
+                await asyncio.sleep(0)
+            was_running = program.cancel()
+            done, _ = await asyncio.wait({program}, timeout=10)
+            server.close()
+            self.assertTrue(done, "the program does not end")
+            self.assertEqual(program.cancelled(), was_running, "the program continued after its cancellation")
+            return was_running, daemon.requests
+
+    @staticmethod
+    async def program(path):
+        async with softgrip.AsyncGripper(path, name="robot") as robot:
+            await robot.status()
+            await robot.start("pick")
+            await robot.status()
+            await robot.status()
+
+
+if __name__ == "__main__":
+    unittest.main()
