@@ -69,6 +69,12 @@ std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::Vect
   return std::nullopt;
 }
 
+/// Returns true if the correlation of command and reading at lag 0 is positive.
+bool rise_together(const std::vector<double>& command, const std::vector<double>& reading) {
+  const auto [u, y] = pairs_of(command, reading);
+  return u.dot(y) > 0;
+}
+
 }  // namespace
 
 bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading) {
@@ -105,7 +111,7 @@ std::optional<StickingStem> shown_stiction(const std::vector<double>& command,
                                            const std::vector<double>& reading) {
   if (!is_closed_loop(command, reading)) return std::nullopt;
   const std::optional<double> ratio = phase_ratio(command, reading);
-  if (!ratio || *ratio <= limits::even_phase_ratio) return std::nullopt;
+  if (!ratio || (*ratio <= limits::even_phase_ratio && rise_together(command, reading))) return std::nullopt;
   const auto [u, y] = finite_pairs(command, reading);
   const std::optional<StickingStem> stem = best_sticking_stem(u, y);
   if (!stem || stem->log_likelihood_ratio <= limits::strict_log_likelihood) return std::nullopt;

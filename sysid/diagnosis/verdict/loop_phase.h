@@ -2,12 +2,14 @@
 // Detects valve stiction in a closed loop.
 //
 // In a closed loop, the command depends on the readings and their noise. A simulation from the command
-// therefore gives no evidence about the valve. If the cross-correlation of command and reading is even (phase
-// shift of 0 or 180 degrees), the reading follows the command, or a disturbance or a tightly tuned controller
-// causes the oscillation. If the valve sticks, the cross-correlation is odd (90 degrees). A. Horch, "A simple
-// method for detection of stiction in control valves", Control Engineering Practice 7 (1999) 1221-1231. An
-// integrating controller also shifts the phase of slow disturbances by 90 degrees. The phase can therefore
-// exclude a sticking valve, but only the comparison of predictions in loop_valve.h can show it.
+// therefore gives no evidence about the valve. If the cross-correlation of command and reading is even and
+// positive (phase shift of 0 degrees), the reading follows the command. Hysteresis of the finger then has the
+// same effect as a sticking valve. If the valve sticks, the cross-correlation is odd (90 degrees): A. Horch,
+// "A simple method for detection of stiction in control valves", Control Engineering Practice 7 (1999)
+// 1221-1231. This holds for processes that settle. If the process integrates, as the level of a tank does,
+// the phase shift is near 180 degrees. A disturbance or a tightly tuned controller also causes a shift of 180
+// degrees, and an integrating controller shifts the phase of slow disturbances by 90 degrees. The phase can
+// therefore exclude a sticking valve, but only the comparison of predictions in loop_valve.h can show it.
 
 #include <optional>
 #include <vector>
@@ -32,7 +34,7 @@ namespace softgrip::sysid {
                                                 const std::vector<double>& reading);
 
 /// Returns the sticking valve that the signals show, or nullopt. Three conditions must hold: the loop is
-/// closed, the phase shift between command and reading is between 30 and 150 degrees, and a sticking valve
+/// closed, the phase shift between command and reading is more than 30 degrees, and a sticking valve
 /// predicts the readings better than a valve that follows the command. The required likelihood ratio is
 /// exp(limits::strict_log_likelihood), multiplied by the number of sticking valves that are compared.
 [[nodiscard]] std::optional<StickingStem> shown_stiction(const std::vector<double>& command,

@@ -78,6 +78,43 @@ TEST(LoopPhase, DisturbanceGivesAnEvenCrossCorrelation) {
   }
 }
 
+/// Returns the signals of a controller that keeps the level of a tank at 0. The level integrates the
+/// difference between the inflow through the valve and the outflow.
+/// @param band  change of the command at which the valve breaks free and jumps.
+/// @param wave  amplitude of a sinusoidal outflow.
+Signals tank(double band, double wave, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.01);
+  Signals signals;
+  double stem = 0.3, level = 0, sum = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const double read = level + noise(random);
+    sum += 0.02 * read;
+    const double command = -0.5 * read - sum;
+    if (std::abs(command - stem) > band) stem = command;
+    level += 0.2 * (stem - 0.13 - wave * std::sin(2 * std::numbers::pi * i / 80));
+    if (i < 300) continue;
+    signals.command.push_back(command);
+    signals.reading.push_back(read);
+  }
+  return signals;
+}
+
+TEST(LoopPhase, StictionInALevelLoopGivesAPhaseNear180Degrees) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Signals s = tank(0.3, 0, seed);
+    EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
+    EXPECT_LT(phase_ratio(s.command, s.reading).value_or(1), limits::even_phase_ratio) << seed;
+    const auto stem = shown_stiction(s.command, s.reading);
+    ASSERT_TRUE(stem) << seed;
+    EXPECT_NEAR(stem->band, 0.3, 0.1) << seed;
+    const Signals outflow = tank(0, 0.3, seed);
+    EXPECT_TRUE(is_closed_loop(outflow.command, outflow.reading)) << seed;
+    EXPECT_FALSE(shown_stiction(outflow.command, outflow.reading)) << seed;
+    EXPECT_FALSE(shown_stiction(tank(0, 0.3, seed).command, tank(0, 0.3, seed).reading)) << seed;
+  }
+}
+
 /// An integrating controller shifts the phase of a slow disturbance by 90 degrees, although the valve is
 /// free.
 TEST(LoopPhase, AnOddCrossCorrelationOfASlowDisturbanceIsNoStiction) {
