@@ -19,7 +19,7 @@
 #include "sysid/changes/change_warnings.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/healthy_runs.h"
-#include "sysid/changes/left_out_bases.h"
+#include "sysid/changes/later_readings.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/evidence/veto.h"

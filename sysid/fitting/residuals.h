@@ -6,10 +6,16 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "sysid/fitting/fit_space.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
+
+/// Jacobian of residuals: one row for each residual and one column for each coordinate, in the order in which
+/// Residuals::evaluate() writes them.
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Prediction minus reading for all readings, record by record. evaluate() is thread-safe.
 class Residuals {

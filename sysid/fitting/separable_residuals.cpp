@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/separable.h"
 #include "sysid/logs/each_record.h"

@@ -12,7 +12,7 @@
 
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "sysid/fitting/jacobian.h"
+#include "sysid/fitting/residuals.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

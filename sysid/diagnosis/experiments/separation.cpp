@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"

@@ -4,7 +4,6 @@
 #include <span>
 #include <utility>
 
-#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "model/catalogue.h"
-#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 

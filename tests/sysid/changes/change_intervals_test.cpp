@@ -10,7 +10,7 @@
 
 #include "base/statistics.h"
 #include "sysid/changes/change_search.h"
-#include "sysid/changes/left_out_bases.h"
+#include "sysid/changes/later_readings.h"
 #include "tests/sysid/changes/pressure_base.h"
 
 namespace softgrip::sysid::change_intervals_test {

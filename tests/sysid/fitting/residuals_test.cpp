@@ -7,7 +7,6 @@
 
 #include "base/thread_budget.h"
 #include "model/catalogue.h"
-#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/each_record.h"
 #include "tests/sysid/simulated.h"

@@ -10,7 +10,6 @@
 #include <Eigen/QR>
 
 #include "sysid/fitting/bounded_solve.h"
-#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/score.h"
 #include "sysid/fitting/start_estimate.h"
