@@ -11,12 +11,12 @@
 #include <cstdlib>
 #include <vector>
 
+#include "bench/named_model.h"
 #include "control/feedforward/actuator_inverse.h"
 #include "control/feedforward/running_model.h"
 #include "control/tick/channel_controller.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/valve_deadband.h"
-#include "model/file/model_file.h"
 #include "model/named.h"
 
 namespace {
@@ -26,19 +26,9 @@ using namespace softgrip;  // NOLINT(google-build-using-namespace)
 constexpr double tick_s = 0.005;
 constexpr Nanoseconds tick_ns = 5'000'000;
 
-model::Model twin() {
-  document::Problems problems;
-  const auto model = model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems);
-  if (!model) {
-    std::fputs(problems.format().c_str(), stderr);
-    std::exit(1);
-  }
-  return *model;
-}
-
 control::ChannelSettings settings_for(control::FeedforwardKind kind) {
   control::ChannelSettings settings;
-  settings.model = twin();
+  settings.model = bench::model_named("bench_twin");
   settings.pid = {0.5, 3, 0.01, 0.02, 1, control::AntiWindup::back_calculation, 0.3};
   settings.feedforward.kind = kind;
   settings.limits = {0, 60, 400, 400, 0, 25, 1};
@@ -163,7 +153,7 @@ void two_channels_percentiles(benchmark::State& state) {
 BENCHMARK(two_channels_percentiles);
 
 void running_model(benchmark::State& state) {
-  control::RunningModel model(twin(), tick_s, 0, 0.05);
+  control::RunningModel model(bench::model_named("bench_twin"), tick_s, 0, 0.05);
   double t = 0;
   while (state.KeepRunning()) {
     t += 0.01;
@@ -175,7 +165,7 @@ void running_model(benchmark::State& state) {
 BENCHMARK(running_model);
 
 void actuator_inverse(benchmark::State& state) {
-  control::ActuatorInverse inverse(control::body_of(twin()), tick_s);
+  control::ActuatorInverse inverse(control::body_of(bench::model_named("bench_twin")), tick_s);
   control::Reference reference;
   reference.start(0, 0);
   (void)reference.ramp_for(6, 2);

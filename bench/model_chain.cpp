@@ -4,28 +4,19 @@
 
 #include <benchmark/benchmark.h>
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "bench/named_model.h"
 #include "bench/play_model.h"
 #include "model/chain.h"
 #include "model/dual.h"
-#include "model/file/model_file.h"
 #include "model/signals.h"
 
 namespace softgrip::model {
 namespace {
 
 constexpr double dt = 1e-3;
-
-Model preset(const std::string& name) {
-  document::Problems problems;
-  const auto model =
-      load_model(std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/" + name + ".yaml", problems);
-  if (!model) throw std::runtime_error(problems.format());
-  return *model;
-}
 
 std::vector<double> command() {
   const auto count = static_cast<std::size_t>(duration_s(SignalName::tp1) / dt);
@@ -76,15 +67,15 @@ void peek_derivative(benchmark::State& state, const Model& model) {
   peek_chain<Dual<double>>(state, model);
 }
 
-BENCHMARK_CAPTURE(step_chain, zhang2025, preset("zhang2025"));
-BENCHMARK_CAPTURE(step_chain, bench_twin, preset("bench_twin"));
+BENCHMARK_CAPTURE(step_chain, zhang2025, bench::model_named("zhang2025"));
+BENCHMARK_CAPTURE(step_chain, bench_twin, bench::model_named("bench_twin"));
 BENCHMARK_CAPTURE(step_chain, twelve_plays, bench::play_model());
-BENCHMARK_CAPTURE(step_irregular, zhang2025, preset("zhang2025"));
-BENCHMARK_CAPTURE(step_irregular, bench_twin, preset("bench_twin"));
+BENCHMARK_CAPTURE(step_irregular, zhang2025, bench::model_named("zhang2025"));
+BENCHMARK_CAPTURE(step_irregular, bench_twin, bench::model_named("bench_twin"));
 BENCHMARK_CAPTURE(step_irregular, twelve_plays, bench::play_model());
-BENCHMARK_CAPTURE(peek_value, zhang2025, preset("zhang2025"));
+BENCHMARK_CAPTURE(peek_value, zhang2025, bench::model_named("zhang2025"));
 BENCHMARK_CAPTURE(peek_value, twelve_plays, bench::play_model());
-BENCHMARK_CAPTURE(peek_derivative, zhang2025, preset("zhang2025"));
+BENCHMARK_CAPTURE(peek_derivative, zhang2025, bench::model_named("zhang2025"));
 BENCHMARK_CAPTURE(peek_derivative, twelve_plays, bench::play_model());
 
 }  // namespace

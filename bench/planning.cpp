@@ -4,13 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <string>
-
+#include "bench/named_model.h"
 #include "control/sequences/planner.h"
 #include "model/chain.h"
-#include "model/file/model_file.h"
 
 namespace {
 
@@ -18,16 +14,8 @@ using namespace softgrip;  // NOLINT(google-build-using-namespace)
 
 constexpr control::LimitSettings wide{0, 60, 400, 400, 0, 30, 1}, narrow{0, 30, 20, 400, 0, 30, 1};
 constexpr double loop_period_s = 0.002, simulation_step_s = 0.001, duration_s = 40;
-
-model::Model model_named(const std::string& name) {
-  document::Problems problems;
-  auto model = model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems);
-  if (!model) {
-    std::fputs(problems.format().c_str(), stderr);
-    std::exit(1);
-  }
-  return *model;
-}
+/// Approximate pressure per displacement, so that the simulated pressure is in the range of the motion.
+constexpr double pressure_per_mm_kpa = 3;
 
 control::Reference sine(double frequency_hz) {
   control::Reference reference;
@@ -40,7 +28,7 @@ control::Reference sine(double frequency_hz) {
 
 void plan(benchmark::State& state, const char* name, const control::LimitSettings& limits,
           double frequency_hz) {
-  const model::Model model = model_named(name);
+  const model::Model model = bench::model_named(name);
   const control::Reference reference = sine(frequency_hz);
   int iterations = 0;
   for (auto _ : state) {
@@ -55,12 +43,12 @@ BENCHMARK_CAPTURE(plan, zhang2025, "zhang2025", wide, 0.1)->Unit(benchmark::kMil
 BENCHMARK_CAPTURE(plan, unreachable, "zhang2025", narrow, 0.5)->Unit(benchmark::kMillisecond);
 
 void simulate(benchmark::State& state, const char* name) {
-  const model::Model model = model_named(name);
+  const model::Model model = bench::model_named(name);
   const control::Reference reference = sine(0.1);
   for (auto _ : state) {
     model::Chain<double> chain(model, {}, simulation_step_s);
     for (int k = 1; k * simulation_step_s < reference.end_s(); ++k)
-      chain.step(simulation_step_s, 3 * reference.value_at(k * simulation_step_s));
+      chain.step(simulation_step_s, pressure_per_mm_kpa * reference.value_at(k * simulation_step_s));
     benchmark::DoNotOptimize(chain.after(model::Station::load));
   }
 }

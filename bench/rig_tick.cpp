@@ -8,34 +8,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <optional>
 #include <vector>
 
+#include "bench/named_model.h"
 #include "bench/play_model.h"
 #include "control/sequences/sequence_file.h"
 #include "control/tick/rig_controller.h"
 #include "model/chain.h"
-#include "model/file/model_file.h"
 
 namespace {
 
 using namespace softgrip;  // NOLINT(google-build-using-namespace)
-
-template <class Value>
-Value or_exit(const std::optional<Value>& value, const document::Problems& problems) {
-  if (!value) {
-    std::fputs(problems.format().c_str(), stderr);
-    std::exit(1);
-  }
-  return *value;
-}
-
-model::Model bench_twin() {
-  document::Problems problems;
-  return or_exit(model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems), problems);
-}
 
 control::RigSettings settings(const model::Model& model, double rate_hz) {
   control::ChannelSettings channel;
@@ -59,9 +42,9 @@ void rig_tick(benchmark::State& state, const model::Model& model) {
   const control::RigSettings rig = settings(model, static_cast<double>(state.range(0)));
   const double period_s = 1 / rig.rate_hz;
   document::Problems problems;
-  const auto sequence = or_exit(
+  const auto sequence = bench::or_exit(
       control::load_sequence(SOFTGRIP_SOURCE_DIR "/config/sequences/track_sine.yaml", problems), problems);
-  const auto track = or_exit(control::prepare(sequence, rig, problems), problems);
+  const auto track = bench::or_exit(control::prepare(sequence, rig, problems), problems);
   control::RigController controller(rig);
   std::vector<model::Chain<double>> fingers(2, model::Chain<double>(rig.channels[0].model, {}, period_s));
   std::vector<model::Reading> readings(2);
@@ -105,7 +88,7 @@ void rig_tick(benchmark::State& state, const model::Model& model) {
   state.counters["p99_ns"] = at(0.99);
   state.counters["p99.9_ns"] = at(0.999);
 }
-BENCHMARK_CAPTURE(rig_tick, bench_twin, bench_twin())
+BENCHMARK_CAPTURE(rig_tick, bench_twin, bench::model_named("bench_twin"))
     ->ArgName("rate_hz")
     ->Arg(200)
     ->Arg(1000)

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "base/random.h"
+#include "bench/named_model.h"
 #include "control/feedforward/invertibility.h"
 #include "control/tuning/gain_search.h"
 #include "control/tuning/tracking_run.h"
-#include "model/file/model_file.h"
 
 namespace {
 
@@ -47,16 +47,6 @@ struct Scheme {
 constexpr std::array<double, 3> frequencies_hz{0.05, 0.1, 0.2};
 constexpr double scatter = 0.05;
 constexpr double tick_s = 0.005;
-
-model::Model model_named(const std::string& name) {
-  document::Problems problems;
-  const auto model = model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems);
-  if (!model) {
-    std::fputs(problems.format().c_str(), stderr);
-    std::exit(1);
-  }
-  return *model;
-}
 
 /// Returns the published Bouc-Wen model with beta reduced to 0.9 of alpha. With the published beta, the model
 /// has an inverse response; with the reduced beta, the model can be inverted.
@@ -220,8 +210,8 @@ Options options_from(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const Options options = options_from(argc, argv);
-  const model::Model twin = model_named("bench_twin");
-  const model::Model published = model_named("zhang2025");
+  const model::Model twin = bench::model_named("bench_twin");
+  const model::Model published = bench::model_named("zhang2025");
   std::printf(
       "bench_twin, 13 ± 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; results of %d models whose "
       "parameters vary by up to ±5 %%, seed %llu; gains by one search on %d other models, Ms <= %.2f\n",
