@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from types import TracebackType
 from typing import Any, Optional, TypeVar
 
@@ -62,8 +62,13 @@ class AsyncGripper:
         await self._hang_up()
 
     async def _open(self) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+        opening = asyncio.create_task(asyncio.open_unix_connection(self.path, limit=LONGEST_LINE))
         try:
-            return await _within(asyncio.open_unix_connection(self.path, limit=LONGEST_LINE), self.answer_s)
+            return await _within(opening, self.answer_s)
+        except asyncio.CancelledError:
+            if opening.done() and not opening.cancelled() and not opening.exception():
+                opening.result()[1].close()
+            raise
         except (OSError, asyncio.TimeoutError) as error:
             raise NoDaemon(f"{self.path}: {error}") from error
 
@@ -215,7 +220,7 @@ class AsyncGripper:
         self._changed = asyncio.Event()
 
 
-async def _within(work: Coroutine[Any, Any, T], timeout_s: float) -> T:
+async def _within(work: Awaitable[T], timeout_s: float) -> T:
     """Returns the result of `work`. Raises asyncio.TimeoutError after `timeout_s` seconds. Before Python 3.12,
     asyncio.wait_for() ignores a cancellation, for example by Ctrl-C, at the moment at which the result arrives. The
     program and its sequence would then continue."""
@@ -227,4 +232,4 @@ async def _within(work: Coroutine[Any, Any, T], timeout_s: float) -> T:
         raise asyncio.TimeoutError
     finally:
         if not task.cancel() and not task.cancelled():
-            task.exception()  # asyncio reports an exception that nobody has read
+            task.exception()  # otherwise, asyncio reports that nobody has read the exception

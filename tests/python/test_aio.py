@@ -17,18 +17,21 @@ MOST_STEPS = 150
 
 
 class Daemon:
-    """Answers each request, and stores the requests."""
+    """Answers each request. Stores the requests and the number of open connections."""
 
     def __init__(self):
         self.requests = []
+        self.connections = 0
 
     async def serve(self, reader, writer):
+        self.connections += 1
         with contextlib.suppress(ConnectionError):
             while line := await reader.readline():
                 request = json.loads(line)
                 self.requests.append(request["command"])
                 result = RESULTS.get(request["command"], ({}, None))[0]
                 writer.write(json.dumps({"id": request["id"], "ok": True, "result": result}).encode() + b"\n")
+        self.connections -= 1
         writer.close()
 
 
@@ -57,7 +60,10 @@ class Cancellation(unittest.TestCase):
                 await asyncio.sleep(0)
             was_running = program.cancel()
             done, _ = await asyncio.wait({program}, timeout=10)
+            for _ in range(MOST_STEPS):
+                await asyncio.sleep(0)
             server.close()
+            self.assertEqual(daemon.connections, 0, "the client left a connection open")
             self.assertTrue(done, "the program does not end")
             self.assertEqual(program.cancelled(), was_running, "the program continued after its cancellation")
             return was_running, daemon.requests
