@@ -25,7 +25,7 @@ struct PressurePlan {
                                         ///< displacement and the reference
   double worst_mm = 0;                  ///< largest difference between the model's displacement and the
                                         ///< reference
-  int iterations = 0;                   ///< of all searches; the computing time is proportional to them
+  int iterations = 0;                   ///< iterations of the planner in all windows
 
   [[nodiscard]] bool empty() const noexcept { return pressure_kpa.empty(); }
   /// Returns the command at a time [kPa]. Before the plan, returns the first command; after the plan, the

@@ -84,7 +84,8 @@ class Window {
     return u;
   }
 
-  /// Returns the number of iterations of all searches.
+  /// Returns the number of iterations of all searches. The last iteration of a search that ends before its
+  /// largest number of iterations is not counted.
   [[nodiscard]] int iterations() const noexcept { return most_iterations_of_window - iterations_left_; }
 
   /// Returns the factor by which the commands `u` must be scaled so that their response fits the target.
@@ -198,7 +199,7 @@ class Window {
   double rise_kpa_;
   double fall_kpa_;
   int iterations_left_ = most_iterations_of_window;
-  // The matrices keep their memory between iterations. To allocate them takes longer than to compute them.
+  // The matrices keep their memory between iterations, because the system clears newly allocated memory.
   Matrix jacobian_, normal_, damped_;
   Vector gradient_;
   Eigen::LDLT<Matrix, Eigen::Lower> factors_;
