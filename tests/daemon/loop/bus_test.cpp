@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "tests/daemon/scripted_board.h"
@@ -233,6 +234,24 @@ TEST_F(WatchedBusTest, AnExchangeLongerThanTheWatchdogIsAFault) {
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 1);
   step(bus);
   EXPECT_EQ(last_written(), 1);
+}
+
+TEST_F(WatchedBusTest, AFailedExchangeLongerThanTheWatchdogIsReportedAsAGap) {
+  Bus bus = make_bus();
+  command(35, 35, true);
+  step(bus);
+  EXPECT_EQ(events(), std::vector<BusEvent::Kind>{BusEvent::Kind::connected});
+  board_.on_exchange = [this] { clock_.advance(watchdog); };
+  board_.next_exchange = BusStatus::timed_out;
+  command(35, 35, true);
+  step(bus);
+  EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 1);
+  BusEvent event;
+  ASSERT_TRUE(shared_.bus_events.pop(event));
+  EXPECT_EQ(event.status, BusStatus::watchdog_tripped);
+  EXPECT_NE(std::string_view(event.detail.data()).find("no successful exchange"), std::string_view::npos);
+  EXPECT_FALSE(shared_.bus_events.pop(event)) << "one event for one cause";
 }
 
 /// Tests a rig with a pressure range from -40 to 60 kPa and a rest pressure of 0 kPa.
