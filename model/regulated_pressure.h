@@ -49,21 +49,8 @@ class RegulatedPressure {
   [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
   [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
-  /// Returns the number of steps for a segment of the duration `segment_s`. The longest step is the largest
-  /// of three durations: 5 ms, 1/20 of the shorter time constant, and 1/200 of the segment. In a longer
-  /// segment, the regulator is at rest most of the time. The second and the third duration are limited to
-  /// 1/20 of integral_s, because longer steps would make the integral unstable. The errors of these steps are
-  /// not larger than those of a regulator with a time constant of 30 ms and steps of 5 ms. The largest number
-  /// of steps covers more than an hour.
-  [[nodiscard]] int steps(double segment_s) const {
-    constexpr double usual_step_s = 0.005, steps_per_constant = 20, enough_steps = 200, most_steps = 1e6;
-    double longest_s = std::max(std::min(value_of(n_.filling_s), value_of(n_.venting_s)) / steps_per_constant,
-                                segment_s / enough_steps);
-    if (value_of(n_.integral_s) > 0)
-      longest_s = std::min(longest_s, value_of(n_.integral_s) / steps_per_constant);
-    longest_s = std::max(longest_s, usual_step_s);
-    return static_cast<int>(std::clamp(std::ceil(segment_s / longest_s - 1e-9), 1.0, most_steps));
-  }
+  /// Returns the number of steps in which the last segment was computed.
+  [[nodiscard]] int steps() const { return steps_; }
 
   /// Computes the pressure over a segment of the command. Passes on one segment for each part of the motion
   /// in which the pressure has one direction.
@@ -75,16 +62,21 @@ class RegulatedPressure {
       return;
     }
     if (is_zero(in.duration_s)) return;  // a segment without duration does not change the pressure
-    const int count = steps(value_of(in.duration_s));
-    const T step_s = in.duration_s / static_cast<double>(count);
+    const double segment_s = value_of(in.duration_s), longest_s = longest_step_s(segment_s);
+    const double range_kpa = std::max(std::abs(value_of(in.begin) - value_of(pressure_kpa_)),
+                                      std::abs(value_of(in.end) - value_of(pressure_kpa_)));
+    double lasts_s = first_step_s(segment_s), since_s = 0;
     Segment<T> out{T(0.0), pressure_kpa_, pressure_kpa_, pressure_kpa_};
     T area(0.0);
-    for (int i = 0; i < count; ++i) {
-      const T from = in.at(T(static_cast<double>(i) / count)), to = in.at(T((i + 1.0) / count));
+    for (steps_ = 0; since_s < segment_s;) {
+      const double until_s = segment_s - since_s < lasts_s * (1 + 1e-6) ? segment_s : since_s + lasts_s;
+      const double begin = since_s / segment_s, end = until_s / segment_s;
+      const T step_s = in.duration_s * (end - begin);
+      const T from = in.at(T(begin)), to = in.at(T(end));
       const T before = pressure_kpa_;
       if (rests(from, to)) {
         // In the remaining steps of the segment, the regulator is at rest.
-        const T rest_s = step_s * static_cast<double>(count - i);
+        const T rest_s = in.duration_s * (1 - begin);
         out.duration_s += rest_s;
         area += before * rest_s;
         break;
@@ -100,6 +92,9 @@ class RegulatedPressure {
       out.duration_s += step_s;
       out.end = pressure_kpa_;
       area += mean * step_s;
+      since_s = until_s;
+      if (++steps_ >= equal_steps && std::abs(way) < quiet_share * range_kpa)
+        lasts_s = std::min(2 * lasts_s, longest_s);
     }
     out.mean = area / out.duration_s;
     next(out);
@@ -109,6 +104,30 @@ class RegulatedPressure {
   /// Gauge pressure for which venting_s is defined [kPa].
   static constexpr double usual_kpa = 50;
   static constexpr double shortest_s = 1e-4;
+  static constexpr double usual_step_s = 0.005, steps_per_constant = 20, most_steps = 1e6;
+  /// Number of equal steps at the begin of a segment. They cover one time constant.
+  static constexpr int equal_steps = 20;
+  /// Change of the pressure in a step below which the next step is twice as long, as a share of the largest
+  /// difference between command and pressure.
+  static constexpr double quiet_share = 0.01;
+
+  /// Returns the longest step for a segment of the duration `segment_s`. Longer steps than 1/20 of integral_s
+  /// would make the integral unstable.
+  [[nodiscard]] double longest_step_s(double segment_s) const {
+    const double integral_s = value_of(n_.integral_s);
+    const double stable_s = integral_s > 0 ? integral_s / steps_per_constant : segment_s;
+    return std::max({stable_s, usual_step_s, segment_s / most_steps});
+  }
+
+  /// Returns the duration of the first steps: 1/20 of the shorter time constant, but not less than 5 ms. If
+  /// the segment has only a few steps, they have equal durations.
+  [[nodiscard]] double first_step_s(double segment_s) const {
+    const double constant_s = std::min(value_of(n_.filling_s), value_of(n_.venting_s));
+    const double step_s =
+        std::clamp(constant_s / steps_per_constant, usual_step_s, longest_step_s(segment_s));
+    const double count = std::max(std::ceil(segment_s / step_s - 1e-9), 1.0);
+    return count <= equal_steps ? segment_s / count : step_s;
+  }
 
   /// Returns the flow to the atmosphere at the gauge pressure `gauge_kpa`, divided by the sonic conductance
   /// of the port [kPa].
@@ -244,6 +263,7 @@ class RegulatedPressure {
 
   RegulatorNumbers<T> n_;
   T pressure_kpa_{0.0}, integral_kpa_{0.0};
+  int steps_ = 0;
 };
 
 }  // namespace softgrip::model
