@@ -70,8 +70,6 @@ class Valve {
   model::RegulatedPressure<double> regulator_;
 };
 
-using Segment = model::Segment<double>;
-
 /// Returns true if `a` and `b` have equal parameters of delay, lags, rate limit, regulator and initial jump.
 /// The pressure in the finger is then equal for both.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
@@ -154,6 +152,13 @@ std::size_t branches_of(const BaseStructure& structure, const StructureGrid& gri
       std::lower_bound(grid.ladder_s.begin(), grid.ladder_s.end(), grid.slow_from_s) - grid.ladder_s.begin());
 }
 
+double knot_interval_of(const StructureGrid& grid, const std::vector<Record>& records) {
+  constexpr double units = 20, most_knots = 16;
+  double longest_s = 0;
+  for (const Record& record : records) longest_s = std::max(longest_s, record.length_s());
+  return std::max(units * grid.time_unit_s, longest_s / most_knots);
+}
+
 }  // namespace
 
 void drive(const Record& record, std::size_t index, const BaseStructure& structure,
@@ -193,14 +198,15 @@ ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& 
       hinges_(structure.hinged_creep ? grid.hinges_kpa.size() : 0),
       hinge_branches_(structure.hinged_creep ? grid.hinge_ladder_s.size() : 0),
       modes_(structure.modes),
-      linear_(structure.linear) {
+      linear_(structure.linear),
+      knot_interval_s_(knot_interval_of(grid, records)) {
   count_ = own();
   for (const Record& record : records) {
     offset_.push_back(record.offset_free ? count_++ : -1);
     const bool open = record.start_unknown && branches_ > 0;
     unsettled_.push_back(open ? count_ : -1);
     if (open) count_ += static_cast<Eigen::Index>(branches_);
-    const double knots = structure.zero_drift ? std::ceil(record.length_s() / knot_interval_s) : 0;
+    const double knots = structure.zero_drift ? std::ceil(record.length_s() / knot_interval_s_ - 1e-9) : 0;
     knots_.push_back(static_cast<std::size_t>(knots));
     zero_drift_.push_back(count_);
     count_ += static_cast<Eigen::Index>(knots);
@@ -338,7 +344,7 @@ void StructureColumns::write_own() {
             std::exp(-since_s / grid_.ladder_s[b]);
       }
       for (std::size_t k = 0; k < layout_.knots(r); ++k) {
-        const double knots_away = since_s / ColumnLayout::knot_interval_s - static_cast<double>(k + 1);
+        const double knots_away = since_s / layout_.knot_interval_s() - static_cast<double>(k + 1);
         columns_(row, layout_.zero_drift(r) + static_cast<Eigen::Index>(k)) =
             std::max(0.0, 1 - std::abs(knots_away));
       }

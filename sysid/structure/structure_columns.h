@@ -68,11 +68,14 @@ class ColumnLayout {
   [[nodiscard]] Eigen::Index offset(std::size_t record) const { return offset_[record]; }
   [[nodiscard]] Eigen::Index unsettled(std::size_t record) const { return unsettled_[record]; }
   /// Returns the first of the knots() columns of the piecewise linear drift of a record. The first knot is at
-  /// the first sample of the record, and the distance between knots is `knot_interval_s`. The drift is 0 at
+  /// the first sample of the record, and the distance between knots is knot_interval_s(). The drift is 0 at
   /// the first knot, so this knot has no column.
   [[nodiscard]] Eigen::Index zero_drift(std::size_t record) const { return zero_drift_[record]; }
   [[nodiscard]] std::size_t knots(std::size_t record) const { return knots_[record]; }
-  static constexpr double knot_interval_s = 20;
+  /// Returns the distance between two knots [s]: 20 units of time_unit_s(), and at least 1/16 of the longest
+  /// record. With a shorter distance, the drift would follow the load cycles, and a fit to a record of many
+  /// hours would have thousands of columns.
+  [[nodiscard]] double knot_interval_s() const { return knot_interval_s_; }
   [[nodiscard]] Eigen::Index count() const { return count_; }
   [[nodiscard]] std::size_t records() const { return offset_.size(); }
 
@@ -89,6 +92,7 @@ class ColumnLayout {
   bool linear_;
   std::vector<Eigen::Index> offset_, unsettled_, zero_drift_;
   std::vector<std::size_t> knots_;
+  double knot_interval_s_;
   Eigen::Index count_ = 0;
 };
 

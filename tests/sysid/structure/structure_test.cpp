@@ -219,6 +219,29 @@ TEST(WithoutWandering, RemovesZeroDriftAndKeepsTheFingerResponse) {
   EXPECT_LT(rms(missed), 0.1 * drift_mm);
 }
 
+/// Returns the number of columns of the drift for a log with this interval.
+std::size_t knots_with(double interval_s, std::size_t samples) {
+  Log log;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double kpa = 30 * std::abs(std::sin(0.05 * static_cast<double>(i)));
+    log.time_s.push_back(interval_s * static_cast<double>(i));
+    log.pressure_command_kpa.push_back(kpa);
+    log.displacement_mm.push_back(0.5 * kpa);
+  }
+  const std::vector<Record> records = make_records({log}, {});
+  BaseStructure structure;
+  structure.zero_drift = true;
+  return ColumnLayout(structure, grid_for(records), records).knots(0);
+}
+
+TEST(WithoutWandering, TheDriftOfALongLogHasFewKnots) {
+  EXPECT_EQ(knots_with(0.1, 1001), 5U);   // 100 s: one knot per 20 s
+  EXPECT_EQ(knots_with(0.1, 5001), 16U);  // 500 s
+  // If a log is slow, the unit of time is longer than 1 s.
+  EXPECT_EQ(knots_with(10, 5000), knots_with(1000, 5000));
+  EXPECT_LE(knots_with(10, 5000), 4U);
+}
+
 /// Sampling rate of the logs from which the tests identify play_finger() and its variants [Hz]. At a higher
 /// rate, the tests take longer and check the same properties.
 constexpr double rate_hz = 25;
