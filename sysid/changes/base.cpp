@@ -26,18 +26,19 @@ namespace {
 /// at least finger_memory_s [s].
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// Sampling intervals of the search for changes [s] if the bins have the length shortest_bin_s().
+/// Sampling intervals of the search for changes, in units of time_unit_s(), if the bins have the length
+/// shortest_bin_in_units().
 /// Oscillations and lags of a finger that are faster need no samples, because the form of a cause describes
 /// them. A valve responds faster than a finger.
-constexpr double finger_samples_s = 0.01, valve_samples_s = 0.005;
+constexpr double finger_samples_in_units = 0.01, valve_samples_in_units = 0.005;
 /// Lower limits of the variation between several healthy runs. `least_gain_spread` applies to the relative
 /// gain, and `least_zero_share` applies to the zero offset as a share of the span. No finger repeats more
 /// accurately from day to day than these limits.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
-double shortest_bin_s(Drive drive) {
-  return drive == Drive::command ? limits::search_interval_s : limits::finger_interval_s;
+double shortest_bin_in_units(Drive drive) {
+  return drive == Drive::command ? limits::search_interval_in_units : limits::finger_interval_in_units;
 }
 
 std::vector<Record> behind(const std::optional<Regulator>& regulator, const std::vector<Record>& records) {
@@ -224,7 +225,7 @@ double rms(const std::vector<double>& squares, const std::vector<double>& rows) 
 }  // namespace
 
 double finger_bin_s(const std::vector<Record>& records) {
-  return bin_s(records, limits::finger_interval_s);
+  return bin_s(records, limits::finger_interval_in_units * time_unit_s(records));
 }
 
 Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s, unsigned threads) {
@@ -247,8 +248,8 @@ Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double 
 }
 
 Record thinned_for(const Base& base, const Record& record) {
-  const double samples_s = base.judged == Judged::pressure ? valve_samples_s : finger_samples_s;
-  return thinned_to_centres(record, base.bin_s / (shortest_bin_s(base.drive) / samples_s));
+  const double samples = base.judged == Judged::pressure ? valve_samples_in_units : finger_samples_in_units;
+  return thinned_to_centres(record, base.bin_s / (shortest_bin_in_units(base.drive) / samples));
 }
 
 Base fit_base(const std::vector<Record>& all_samples, Judged judged, Drive drive,
@@ -256,7 +257,7 @@ Base fit_base(const std::vector<Record>& all_samples, Judged judged, Drive drive
   Base base;
   base.judged = judged;
   base.drive = drive;
-  base.bin_s = bin_s(all_samples, shortest_bin_s(drive));
+  base.bin_s = bin_s(all_samples, shortest_bin_in_units(drive) * time_unit_s(all_samples));
   std::vector<Record> records = all_samples;
   if (2 * options.later_interval_s > base.bin_s) {
     for (Record& record : records) record = thinned_to(record, options.later_interval_s);

@@ -109,12 +109,13 @@ inline constexpr double block_s = 5;
 inline constexpr double rest_share = 0.05;
 /// Largest change of a command that counts as constant, as a share of the full pressure.
 inline constexpr double constant_command_share = 0.02;
-/// Sampling interval of the records in a search [s]. The lags of valves and the periods of the resonances of
-/// fingers are longer than this interval.
-inline constexpr double search_interval_s = 0.02;
-/// Sampling interval that is sufficient for a finger whose input is its measured pressure [s]. The interval
-/// can be longer than `search_interval_s`, because a finger responds more slowly than a valve.
-inline constexpr double finger_interval_s = 0.05;
+/// Sampling interval of the records in a search, in units of time_unit_s(). The lags of valves and the
+/// periods of the resonances of fingers are longer than this interval.
+inline constexpr double search_interval_in_units = 0.02;
+/// Sampling interval that is sufficient for a finger whose input is its measured pressure, in units of
+/// time_unit_s(). The interval can be longer than `search_interval_in_units`, because a finger responds more
+/// slowly than a valve.
+inline constexpr double finger_interval_in_units = 0.05;
 /// Largest noise of a command that counts as planned before the run, as a share of the standard deviation of
 /// the command. The only noise of a planned command is the rounding in its file. The command of a controller
 /// also contains the noise of the readings.

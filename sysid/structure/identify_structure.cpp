@@ -189,9 +189,10 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   if (options.progress) {
     choice_options.progress = [&](const std::string& stage) { options.progress({0, 0, 0, stage}); };
   }
-  const std::vector<Record> fewer = with_simplest_start(
-      averaged_to_count(result.records, enough_readings, limits::search_interval_s * time_unit_s(whole)),
-      choice_options);
+  const std::vector<Record> fewer =
+      with_simplest_start(averaged_to_count(result.records, enough_readings,
+                                            limits::search_interval_in_units * time_unit_s(whole)),
+                          choice_options);
   for (std::size_t k = 0; k < fewer.size(); ++k) result.records[k].start_unknown = fewer[k].start_unknown;
   const StructureChoice choice = choose_structure(fewer, choice_options);
   StructureTrial chosen = choice.trials[choice.chosen];

@@ -116,12 +116,13 @@ double Hypothesis::linear_distance(const Record& record, const std::vector<doubl
 }
 
 double Hypothesis::refitted_distance(const Record& record, const std::vector<double>& truth_mm) const {
+  const double interval_s = limits::finger_interval_in_units * time_unit_s(records_);
   std::vector<Record> records;
-  for (const Record& old : records_) records.push_back(thinned_to(old, limits::finger_interval_s));
+  for (const Record& old : records_) records.push_back(thinned_to(old, interval_s));
   records.push_back(record);
   records.back().reading_mm = truth_mm;
   records.back().readings = truth_mm.size();
-  records.back() = thinned_to(records.back(), limits::finger_interval_s);
+  records.back() = thinned_to(records.back(), interval_s);
   FitPoint point = fit_.point;
   point.starts.push_back(rest_starts(point.model, {record}).front());
   const StructureFit refitted = fit_structure(records, fit_.causes, point, few_iterations);

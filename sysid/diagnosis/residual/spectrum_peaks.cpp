@@ -28,9 +28,9 @@ constexpr std::size_t widest_around = 60;
 constexpr std::size_t resolution = 2;
 /// Number of lines that are tested as oscillations in a search for causes.
 constexpr std::size_t looked_at_lines = 3;
-/// Highest frequency of a line. The samples of a search (limits::search_interval_s) cannot show a faster
+/// Highest frequency of a line, multiplied by time_unit_s(). The samples of a search cannot show a faster
 /// oscillation.
-constexpr double highest_looked_at_hz = 0.5 / limits::search_interval_s;
+constexpr double highest_per_unit = 0.5 / limits::search_interval_in_units;
 
 /// Time grid of the transforms of all records. The first sample of each record is the first point of its
 /// grid.
@@ -104,7 +104,7 @@ class Spectra {
       : records_(records),
         grid_(grid_of(records)),
         around_(std::max(limits::fewest_events / 2, widest_around / records.size())) {
-    const double highest_hz = std::min(0.45 / grid_.interval_s, highest_looked_at_hz);
+    const double highest_hz = std::min(0.45 / grid_.interval_s, highest_per_unit / time_unit_s(records));
     const std::size_t bins = std::min(grid_.size / 2, static_cast<std::size_t>(highest_hz / step_hz()));
     const auto transformed = [&](const std::vector<std::vector<double>>& series) {
       std::vector<std::vector<Complex>> spectra;

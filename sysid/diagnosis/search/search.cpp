@@ -212,9 +212,10 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
   data.records = std::move(records);
   data.given = {given, rest_starts(given, data.records)};
   data.scales = scales_of(data.records);
+  const double interval_s = limits::search_interval_in_units * data.scales.time_unit_s;
   for (const Record& record : data.records) {
-    data.thinned.push_back(thinned_to(record, limits::search_interval_s));
-    data.glimpsed.push_back(thinned_to(record, 2 * limits::search_interval_s));
+    data.thinned.push_back(thinned_to(record, interval_s));
+    data.glimpsed.push_back(thinned_to(record, 2 * interval_s));
   }
   return data;
 }

@@ -214,9 +214,10 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs) {
 
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings) {
   if (reading_count(records) <= enough_readings) return false;
+  const double interval_s = averaged_interval_in_units * time_unit_s(records);
   bool any = false;
   for (Record& record : records) {
-    Record averaged = averaged_to(record, averaged_interval_s);
+    Record averaged = averaged_to(record, interval_s);
     if (averaged.size() == record.size()) continue;
     warnings.push_back(record.name + ": " + significant(1 / record.mean_interval_s(), 3) +
                        " samples per second are more than the bandwidth of a finger requires, so the "

@@ -55,9 +55,9 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
 ///   valve_deadband is named. The causes of the search are then moved to `partial`.
 void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs);
 
-/// Longest time over which consecutive readings are averaged [s]. It is half of the sampling interval at 100
-/// Hz.
-inline constexpr double averaged_interval_s = 0.005;
+/// Longest time over which consecutive readings are averaged, in units of time_unit_s(). For a finger, it is
+/// half of the sampling interval at 100 Hz.
+inline constexpr double averaged_interval_in_units = 0.005;
 
 /// Averages the records if they have more readings than enough_readings (`sysid/logs/resampled_record.h`).
 /// Adds one sentence to `warnings` for each averaged record. Returns true if at least one record was

@@ -127,8 +127,8 @@ TEST(DenseLogs, DenseReadingsAreAveragedWithAWarning) {
   const double length_s = records.front().length_s();
   std::vector<std::string> warnings;
   EXPECT_TRUE(average_dense(records, warnings));
-  EXPECT_NEAR(records.front().mean_interval_s(), averaged_interval_s, 1e-9);
-  EXPECT_NEAR(records.front().length_s(), length_s, averaged_interval_s);
+  EXPECT_NEAR(records.front().mean_interval_s(), averaged_interval_in_units, 1e-9);
+  EXPECT_NEAR(records.front().length_s(), length_s, averaged_interval_in_units);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings.front().find("2000 samples per second"), std::string::npos) << warnings.front();
 }

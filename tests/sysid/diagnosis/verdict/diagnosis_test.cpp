@@ -13,6 +13,7 @@
 
 #include "base/random.h"
 #include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
@@ -58,6 +59,34 @@ TEST(Diagnosis, SmallResidualStartsNoSearchForAnotherStructure) {
   for (const std::string& text : said) {
     EXPECT_NE(text, "search for another model structure");
     EXPECT_NE(text, "search for stick-slip");
+  }
+}
+
+/// Returns a model whose creep is `factor` times as slow.
+model::Model with_slower_creep(model::Model given, double factor) {
+  std::vector<double>& values = given.blocks[*model::position_of<model::KelvinVoigt>(given)].values;
+  for (std::size_t damper = 2; damper < values.size(); damper += 2) values[damper] *= factor;
+  return given;
+}
+
+// A rig of a different size is faster or slower. Only the unit of time differs, so the diagnosis must be the
+// same.
+TEST(Diagnosis, TheCauseIsNamedForEveryUnitOfTime) {
+  constexpr double delay_s = 0.4;
+  const model::Model given = loaded("zhang2025");
+  const model::Model truth =
+      model::with_block(given, model::block_of<model::TransportDelay>({{"delay_s", delay_s}}));
+  const Log usual = simulated(truth, model::SignalName::tp1, 25, noise_mm, 17);
+  for (const double factor : {1e-3, 1e3}) {
+    SCOPED_TRACE(factor);
+    Log log = usual;
+    for (double& t : log.time_s) t *= factor;
+    const auto diagnosis = diagnose({log}, with_slower_creep(given, factor), {});
+    ASSERT_TRUE(diagnosis) << diagnosis.error();
+    ASSERT_EQ(diagnosis->causes.size(), 1U);
+    const NamedCause& named = diagnosis->causes.front();
+    EXPECT_EQ(named.cause.id, "transport_delay");
+    EXPECT_NEAR(named.parameters.front().value, factor * delay_s, 0.02 * factor * delay_s);
   }
 }
 
