@@ -42,7 +42,7 @@ def _text(path: Path, largest: int) -> str:
         _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced the file since the first check
         data = file.read(largest)
     try:
-        return data.decode()
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise MalformedFile(f"{path}: the file is not text in UTF-8: {error}") from error
 
@@ -58,8 +58,11 @@ def _json_object(path: Path) -> dict[str, Any]:
     return value
 
 
-def _column(cells: list[str]) -> Array:
-    """Returns an array of numbers if every cell is a number or empty (NaN). Otherwise, returns an array of texts."""
+def _column(name: str, cells: list[str]) -> Array:
+    """Returns an array of numbers if every cell is a number or empty (NaN). Otherwise, returns an array of texts. The names
+    of fingers are texts, because a name may consist of digits."""
+    if name == "channel":
+        return np.array(cells)
     try:
         return np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError:
@@ -87,7 +90,7 @@ def read_columns(path: Path) -> dict[str, Array]:
         if names.count(name) > 1:
             raise MalformedFile(f"{path}: the column '{name}' exists more than once")
     columns = zip(*kept[1:]) if len(kept) > 1 else ([] for _ in names)
-    return {name: _column(list(cells)) for name, cells in zip(names, columns)}
+    return {name: _column(name, list(cells)) for name, cells in zip(names, columns)}
 
 
 def read_report(path: Path) -> Mapping[str, Any]:

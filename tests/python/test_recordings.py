@@ -47,6 +47,16 @@ class Recordings(unittest.TestCase):
         self.assertEqual(left["result"].tolist(), ["none", "holding"])
         self.assertNotIn("channel", left)
 
+    def test_the_name_of_a_finger_may_be_a_number(self):
+        self.write(RUN.replace("left", "1").replace("right", "02"))
+        channels = Recording.read(self.folder).channels
+        self.assertEqual(list(channels), ["1", "02"])
+        np.testing.assert_array_equal(channels["02"]["time_s"], [0, 0.5])
+
+    def test_a_byte_order_mark_is_not_part_of_the_first_name(self):
+        self.write("\ufefftime_s,displacement_mm\n0,1\n")
+        self.assertEqual(list(read_columns(self.folder / "run.csv")), ["time_s", "displacement_mm"])
+
     def test_an_invalid_path_is_rejected(self):
         for call in (read_columns, read_report, Recording.read):
             for bad in (0, None, b"run.csv", "\ud800", "a\0b"):
