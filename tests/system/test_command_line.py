@@ -52,6 +52,13 @@ class Offline(bench.BenchTest):
         self.assertIn("bad.csv:3:3", self.simulate("--input", "bad.csv", "--out", "a.csv", expect=3).stderr)
         self.assertFalse((self.folder / "a.csv").exists())
 
+    def test_calibrate_rejects_a_duration_before_it_connects(self):
+        calibrate = ("calibrate", "--rig", "config/rig_tcp.yaml", "--channel", "left", "--dead-zone", "--move")
+        for option in ("--settle-s", "--average-s", "--ramp-s"):
+            self.assertIn("'nan'", self.softgrip(*calibrate, option, "nan", expect=2).stderr)
+        told = self.softgrip(*calibrate, "--ramp-s", "2", expect=2).stderr
+        self.assertIn("--ramp-s 2 is too short: state at least 5 (10 times pressure_delay_s of the rig file)", told)
+
     def test_check_reports_all_problems_of_a_file(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
         # The sequence of the vacuum rig is valid for the vacuum rig only.

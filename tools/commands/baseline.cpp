@@ -294,7 +294,7 @@ void add_rig_options(CLI::App& command, BaselineOptions& options) {
           "--rest-s", options.rest_s,
           "With --rig: duration of the rest at zero pressure before each experiment, in which creep decays")
       ->needs(rig)
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(number_between(0, 3600))
       ->capture_default_str();
   command.add_flag("--yes", options.yes, "Move the rig without a confirmation question")->needs(rig);
 }

@@ -46,6 +46,10 @@ struct CalibrateOptions {
   bool yes = false;
 };
 
+/// Shortest ramp for the dead zone, as a multiple of the longest delay of the valve that the rig file
+/// permits.
+constexpr double delays_per_ramp = 10;
+
 std::string today() {
   const std::time_t now = std::time(nullptr);
   std::tm date{};
@@ -199,6 +203,13 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
       }
     }
   }
+  if (options.dead_zone && options.ramp_s < delays_per_ramp * rig.settings.faults.pressure_delay_s) {
+    return tl::unexpected(
+        fail(ExitCode::usage, "--ramp-s " + significant(options.ramp_s) + " is too short: state at least " +
+                                  significant(delays_per_ramp * rig.settings.faults.pressure_delay_s) +
+                                  " (10 times pressure_delay_s of the rig file); during a shorter ramp, the "
+                                  "delay of the valve looks like a dead zone"));
+  }
   calibrate::Settings settings;
   settings.channel = *channel;
   settings.may_move = options.move;
@@ -262,13 +273,13 @@ void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
                   "Pressures of the two calibration points [1/6 and 2/3 of the permitted pressure range]")
       ->expected(2);
   command.add_option("--settle-s", options.settle_s, "Waiting time between a motion and the measurement")
-      ->check(CLI::Range(0.0, 600.0))
+      ->check(number_between(0, 600))
       ->capture_default_str();
   command.add_option("--average-s", options.average_s, "Duration over which each reading is averaged")
-      ->check(CLI::Range(0.1, 600.0))
+      ->check(number_between(0.1, 600))
       ->capture_default_str();
   command.add_option("--ramp-s", options.ramp_s, "Duration of the pressure ramp that finds the dead zone")
-      ->check(CLI::Range(1.0, 600.0))
+      ->check(number_between(1, 600))
       ->capture_default_str();
   command
       .add_option("--repeats", options.repeats,

@@ -156,7 +156,7 @@ void add_health(CLI::App& program, ExitCode& outcome) {
   command
       ->add_option("--false-alarm-points", options->judge.false_alarm_points,
                    "Mean number of points between two false alarms of a healthy finger (average run length)")
-      ->check(CLI::Range(20.0, 1e9))
+      ->check(number_between(20, 1e9))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print health.json");
   command->footer(

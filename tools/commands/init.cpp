@@ -143,7 +143,7 @@ void add_init(CLI::App& program, ExitCode& outcome) {
       ->add_option("--rate-hz", options->rate_hz,
                    "Rate of the control loop and the bus [the highest of the usual rates at which the board "
                    "can be used]")
-      ->check(CLI::Range(1.0, 10000.0));
+      ->check(number_between(1, 10000));
   command->add_flag("--service", options->service, "Use the folders of the system service instead of /tmp");
   for (const Fact& fact : draft_facts()) {
     CLI::Option* const option = command->add_option("--" + fact.key, options->facts[fact.key], fact.about);
