@@ -59,6 +59,14 @@ class Offline(bench.BenchTest):
         told = self.softgrip(*calibrate, "--ramp-s", "2", expect=2).stderr
         self.assertIn("--ramp-s 2 is too short: state at least 5 (10 times pressure_delay_s of the rig file)", told)
 
+    def test_diagnose_and_investigate_reject_nan(self):
+        self.simulate("--input", "tp1", "--out", "log.csv")
+        files = ("--model", "config/models/bench_twin.yaml", "--data", "log.csv", "--out", "result")
+        for command in ("diagnose", "investigate"):
+            for option in ("--slew-kpa-per-s", "--pressure-max-kpa"):
+                self.assertIn("'nan' is not a number above 0", self.softgrip(command, *files, option, "nan", expect=2).stderr)
+        self.assertIn("'nan'", self.softgrip("investigate", *files, "--budget-minutes", "nan", expect=2).stderr)
+
     def test_check_reports_all_problems_of_a_file(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
         # The sequence of the vacuum rig is valid for the vacuum rig only.

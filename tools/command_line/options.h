@@ -3,6 +3,7 @@
 // and checks of option values that CLI11 does not provide.
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -62,6 +63,16 @@ void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
     return value && *value >= lower && *value <= upper ? std::string() : "'" + text + "' is not " + range;
   };
   return CLI::Validator(check, "");
+}
+
+/// Accepts a finite number above 0. Unlike CLI::PositiveNumber, it refuses NaN.
+[[nodiscard]] inline CLI::Validator positive_number() {
+  const auto check = [](const std::string& text) {
+    const auto value = to_number(text);
+    return value && std::isfinite(*value) && *value > 0 ? std::string()
+                                                        : "'" + text + "' is not a number above 0";
+  };
+  return CLI::Validator(check, "POSITIVE");
 }
 
 /// Accepts a whole number between `lower` and `upper`, bounds included.

@@ -269,11 +269,11 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
                    "Highest pressure of the proposed experiment [the highest pressure in the logs]")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       ->add_option("--slew-kpa-per-s", options->slew_kpa_per_s,
                    "Slew rate of the rig; limits the proposed experiment")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_flag("--no-closed-loop", options->no_closed_loop,
                     "Do not simulate the closed loop with the extended model");

@@ -275,14 +275,14 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command
       ->add_option("--budget-minutes", options->budget_minutes,
                    "Longest total duration of the experiments on the rig")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_between(0, 1e6))
       ->capture_default_str();
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
                    "With --rig-command: highest pressure of the rig [the highest pressure in the logs]")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "With --rig-command: slew rate of the rig")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_flag("--yes", options->yes, "Move the rig without a confirmation question");
   command->add_flag("--no-closed-loop", options->no_closed_loop,
