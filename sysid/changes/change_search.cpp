@@ -85,7 +85,8 @@ std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const st
 }
 
 std::vector<std::size_t> blocks_of(const LaterReadings& readings) {
-  const auto per_block = static_cast<std::size_t>(std::max(1.0, limits::block_s / readings.base().bin_s));
+  const auto per_block =
+      static_cast<std::size_t>(std::max(1.0, readings.base().units.block_s() / readings.base().bin_s));
   std::vector<std::size_t> blocks;
   const std::vector<WhiteRows::Row>& rows = readings.rows().rows();
   for (std::size_t i = 0; i < rows.size(); ++i) {

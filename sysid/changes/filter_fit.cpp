@@ -241,7 +241,7 @@ PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& u
   std::pair<std::size_t, double> last{0, -1};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::pair block{rows[i].record,
-                          std::floor(static_cast<double>(rows[i].bin) * bin_s / limits::block_s)};
+                          std::floor(static_cast<double>(rows[i].bin) * bin_s / units.block_s())};
     if (block != last) paired.begin_block();
     last = block;
     paired.add(a(static_cast<Eigen::Index>(i)), c(static_cast<Eigen::Index>(i)));

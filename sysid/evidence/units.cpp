@@ -7,7 +7,7 @@
 
 namespace softgrip::sysid {
 
-Units::Units(const std::vector<Record>& records) {
+Units::Units(const std::vector<Record>& records) : block_s_(limits::block_in_units * time_unit_s(records)) {
   for (const Record& record : records) middle_s_.push_back(record.length_s() / 2);
   count_ = are_runs() ? std::min(runs(), limits::most_units) : 2;
 }
@@ -35,7 +35,7 @@ std::vector<Record> Units::without(const std::vector<Record>& records, std::size
 
 Division divide_by_unit(const std::vector<Record>& records) {
   const Units units(records);
-  Division division = divide(records, limits::block_s);
+  Division division = divide(records, units.block_s());
   division.folds = units.count();
   division.gap_s = 0;
   for (Block& block : division.blocks) {

@@ -23,6 +23,8 @@ class Units {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t runs() const noexcept { return middle_s_.size(); }
   [[nodiscard]] bool are_runs() const noexcept { return runs() > 1; }
+  /// Returns the length of the blocks that a bootstrap resamples within a unit [s].
+  [[nodiscard]] double block_s() const noexcept { return block_s_; }
   /// Returns the index of the unit that contains a sample of a record.
   /// @param since_start_s  time from the first sample of the record to this sample.
   [[nodiscard]] std::size_t unit_of(std::size_t record, double since_start_s) const noexcept;
@@ -35,11 +37,12 @@ class Units {
 
  private:
   std::size_t count_ = 0;
+  double block_s_ = 0;
   std::vector<double> middle_s_;  ///< for each record, the time from its start to its middle
 };
 
-/// Divides the records into blocks of limits::block_s seconds for cross-validation. All blocks of a unit
-/// belong to the same fold.
+/// Divides the records into blocks of Units::block_s() for cross-validation. All blocks of a unit belong to
+/// the same fold.
 [[nodiscard]] Division divide_by_unit(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -101,9 +101,9 @@ inline constexpr double usual_gain_spread = 0.01;
 /// The spread that four healthy runs measure (3 degrees of freedom) then has the same weight as the usual
 /// spread.
 inline constexpr double usual_gain_runs = 3;
-/// Length of the blocks that the bootstrap resamples [s]. A block lasts longer than the fast part of the
-/// creep.
-inline constexpr double block_s = 5;
+/// Length of the blocks that the bootstrap resamples, in units of time_unit_s(). A block lasts longer than
+/// the fast part of the creep.
+inline constexpr double block_in_units = 5;
 /// Largest pressure above the lowest pressure that counts as zero, as a share of the pressure range. The
 /// resolution of a valve near zero has about this size.
 inline constexpr double rest_share = 0.05;

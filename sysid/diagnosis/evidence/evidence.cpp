@@ -335,8 +335,9 @@ ResidualEvidence examine_residual(const std::vector<Record>& records,
   evidence.rms_mm = std::sqrt(mean_square);
   evidence.structure_mm = std::sqrt(std::max(0.0, mean_square - square(noise_mm)));
   evidence.memory_s = memory_s(samples, residual, length_s / n);
-  evidence.block_s = std::min(std::max(limits::block_s, memories_per_block * evidence.memory_s),
-                              length_s / static_cast<double>(fewest_blocks));
+  evidence.block_s = std::min(
+      std::max(limits::block_in_units * time_unit_s(records), memories_per_block * evidence.memory_s),
+      length_s / static_cast<double>(fewest_blocks));
   const std::vector<std::size_t> block = blocks_of(samples, evidence.block_s, evidence.blocks);
   const bool present = variance > square(noise_mm) * (1 + limits::negligible_share);
   const double structural =

@@ -11,9 +11,9 @@
 
 namespace softgrip::sysid {
 
-/// Length of the blocks in which the losses of causes are compared [s]. Correlation times of residuals are
-/// rarely longer than this length.
-inline constexpr double block_length_s = 8;
+/// Length of the blocks in which the losses of causes are compared, in units of time_unit_s(). Correlation
+/// times of residuals are rarely longer than this length.
+inline constexpr double block_length_in_units = 8;
 
 /// Returns the loss of each block. The structure is refitted to the readings outside the fold of the block.
 /// The initial states of the records are taken from `fit`.

@@ -70,7 +70,7 @@ PairedLosses losses_there(const std::vector<Record>& records, const std::vector<
   std::vector<std::size_t> before{0};  // for each record, number of readings in all earlier records
   for (const Record& record : records) before.push_back(before.back() + record.readings);
   std::vector<std::size_t> next = before;
-  for (const Block& block : divide(records, limits::block_s).blocks) {
+  for (const Block& block : divide(records, limits::block_in_units * time_unit_s(records)).blocks) {
     losses.begin_block();
     for (std::size_t i = block.first; i < block.last; ++i) {
       if (!std::isfinite(records[block.record].reading_mm[i]) || !required[next[block.record]++]) continue;

@@ -65,7 +65,7 @@ class Diagnostician {
     auto base = recalibrate(data_, options_);
     if (!base) return Failure(base.error());
     hide_more_outliers(*base);
-    const Division division = divide(data_.records, block_length_s);
+    const Division division = divide(data_.records, block_length_in_units * data_.scales.time_unit_s);
     d_.recalibrated = std::move(*base);
     if (const auto wrong = why_not_about(data_.records, d_.recalibrated)) return Failure(*wrong);
     clock.ended("recalibration");

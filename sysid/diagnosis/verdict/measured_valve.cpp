@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Dense>
 
@@ -14,9 +15,17 @@
 namespace softgrip::sysid {
 namespace {
 
-std::size_t blocks_of(const Log& log) {
-  return std::max<std::size_t>(
-      1, static_cast<std::size_t>((log.time_s.back() - log.time_s.front()) / block_length_s));
+double length_s(const Log& log) {
+  return log.time_s.back() - log.time_s.front();
+}
+
+double block_length_s(const std::vector<Log>& logs) {
+  double interval_s = std::numeric_limits<double>::infinity(), longest_s = 0;
+  for (const Log& log : logs) {
+    interval_s = std::min(interval_s, length_s(log) / static_cast<double>(log.size()));
+    longest_s = std::max(longest_s, length_s(log));
+  }
+  return block_length_in_units * time_unit_s(interval_s, longest_s);
 }
 
 double highest_kpa(const std::vector<Log>& logs) {
@@ -29,9 +38,11 @@ double highest_kpa(const std::vector<Log>& logs) {
 
 }  // namespace
 
-MeasuredValve::MeasuredValve(const std::vector<Log>& logs, bool held) : logs_(logs), held_(held) {
+MeasuredValve::MeasuredValve(const std::vector<Log>& logs, bool held)
+    : logs_(logs), held_(held), block_s_(block_length_s(logs)) {
   for (const Log& log : logs_) {
-    blocks_end_.push_back(blocks_of(log) + (blocks_end_.empty() ? 0 : blocks_end_.back()));
+    const auto blocks = std::max<std::size_t>(1, static_cast<std::size_t>(length_s(log) / block_s_));
+    blocks_end_.push_back(blocks + (blocks_end_.empty() ? 0 : blocks_end_.back()));
     samples_ += log.size();
   }
 }
@@ -118,7 +129,7 @@ ValveFit MeasuredValve::fit_of(ValveParts parts, const std::vector<ValveStage>& 
 std::size_t MeasuredValve::block(std::size_t log, std::size_t sample) const {
   const std::size_t before = log == 0 ? 0 : blocks_end_[log - 1];
   const double at_s = logs_[log].time_s[sample] - logs_[log].time_s.front();
-  return std::min(before + static_cast<std::size_t>(at_s / block_length_s), blocks_end_[log] - 1);
+  return std::min(before + static_cast<std::size_t>(at_s / block_s_), blocks_end_[log] - 1);
 }
 
 Eigen::VectorXd MeasuredValve::errors(const ValveStage& stage) const {

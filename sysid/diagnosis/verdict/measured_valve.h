@@ -60,7 +60,8 @@ class MeasuredValve {
 
   const std::vector<Log>& logs_;
   bool held_;
-  std::size_t samples_ = 0;              ///< number of samples in all logs
+  std::size_t samples_ = 0;  ///< number of samples in all logs
+  double block_s_;
   std::vector<std::size_t> blocks_end_;  ///< for each log, index of the first block after the log
 };
 

@@ -101,5 +101,22 @@ TEST(Units, EachFoldHoldsOutOneWholeUnit) {
   }
 }
 
+Record sampled_every(double interval_s) {
+  Record record = record_of(1000);
+  for (double& t : record.time_s) t *= interval_s;
+  for (double& t : record.duration_s) t *= interval_s;
+  record.finest_interval_s = interval_s;
+  return record;
+}
+
+TEST(Units, ABlockLastsLongerInASlowLog) {
+  EXPECT_EQ(Units({sampled_every(0.01)}).block_s(), 5);
+  const double slow_s = Units({sampled_every(10)}).block_s();
+  EXPECT_GT(slow_s, 100 * 10) << "at least 100 samples";
+  EXPECT_NEAR(Units({sampled_every(1000)}).block_s(), 100 * slow_s, 1e-6 * slow_s);
+  EXPECT_EQ(divide_by_unit({sampled_every(10)}).blocks.size(),
+            divide_by_unit({sampled_every(1000)}).blocks.size());
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::units_test
