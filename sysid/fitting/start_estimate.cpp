@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 #include "base/statistics.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/periodic_disturbance.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/fitting/trajectory_walk.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/each_record.h"
 #include "sysid/logs/resampled_record.h"
@@ -38,6 +42,9 @@ constexpr int grid_steps = 5, halvings = 4;
 constexpr double least_correlation = 0.05;
 /// Number of independent readings that is assumed before a residual has been computed.
 constexpr double independent_at_first = 5;
+/// Number of shifts that are tried within a period of the largest oscillation. The best of them is then
+/// refined.
+constexpr int tried_shifts = 16;
 
 Record beginning_of(const Record& unit) {
   std::vector<std::size_t> kept(samples_for_start(unit));
@@ -92,8 +99,9 @@ class StartSearch {
   }
 
   StartState run(const Record& unit) {
-    const StartState rest = at_rest();
+    StartState rest = at_rest();
     if (rows_.empty()) return rest;
+    rest.oscillation_shift_s = oscillation_shift_s(unexplained(rest));
     const Trial resting = with_offset(rest);
     if (unit.start == Start::rest) return resting.start;
     const Trial moving = anywhere(rest);
@@ -183,6 +191,71 @@ class StartSearch {
     // select a state. Therefore the steady cycle over the range of the drive is preferred.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
     return usual.cost < best.cost + square(rejected_at) ? usual : best;
+  }
+
+  /// Returns the sum of all oscillations of the model at each reading.
+  [[nodiscard]] Eigen::VectorXd oscillations_mm(double shift_s) const {
+    Eigen::VectorXd sum_mm = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows_.size()));
+    for (const model::BlockSpec& block : model_.blocks) {
+      if (!model::is<model::PeriodicDisturbance>(block)) continue;
+      for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (rows_[r] == 0) continue;  // a simulation begins with the first step after this sample
+        const model::Surroundings around = surroundings_at(beginning_, rows_[r]);
+        const double angle =
+            2 * std::numbers::pi * block.values[2] * (around.time_s + around.oscillation_shift_s + shift_s);
+        sum_mm[static_cast<Eigen::Index>(r)] +=
+            block.values[0] * std::sin(angle) + block.values[1] * std::cos(angle);
+      }
+    }
+    return sum_mm;
+  }
+
+  /// Returns the period of the largest oscillation of the model [s], or 0 if the model has no oscillation.
+  [[nodiscard]] double oscillation_period_s() const {
+    double period_s = 0, largest_mm = 0;
+    for (const model::BlockSpec& block : model_.blocks) {
+      if (!model::is<model::PeriodicDisturbance>(block)) continue;
+      const double amplitude_mm = std::hypot(block.values[0], block.values[1]);
+      if (!(amplitude_mm > largest_mm)) continue;
+      largest_mm = amplitude_mm;
+      period_s = 1 / block.values[2];
+    }
+    return period_s;
+  }
+
+  /// Returns the shift of the oscillations for which the residual is smallest, after a straight line is
+  /// subtracted from the residual. Returns 0 if the reduction could be noise.
+  /// @param unshifted_mm  readings minus the prediction without a shift.
+  [[nodiscard]] double oscillation_shift_s(const Eigen::VectorXd& unshifted_mm) const {
+    const double period_s = oscillation_period_s();
+    if (period_s <= 0) return 0;
+    Eigen::MatrixXd line = Eigen::MatrixXd::Ones(unshifted_mm.size(), 2);
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      line(static_cast<Eigen::Index>(r), 1) = beginning_.time_s[rows_[r]] - beginning_.time_s[0];
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(line);
+    const Eigen::VectorXd others_mm = unshifted_mm + oscillations_mm(0);
+    const auto left_with = [&](double shift_s) -> Eigen::VectorXd {
+      const Eigen::VectorXd left = others_mm - oscillations_mm(shift_s);
+      return left - line * qr.solve(left);
+    };
+    double best_s = 0, step_s = period_s / tried_shifts;
+    const double unshifted_mm2 = left_with(0).squaredNorm();
+    double best_mm2 = unshifted_mm2;
+    const auto attempt = [&](double shift_s) {
+      const double squares_mm2 = left_with(shift_s).squaredNorm();
+      if (!(squares_mm2 < best_mm2)) return;
+      best_mm2 = squares_mm2;
+      best_s = shift_s;
+    };
+    for (int i = 1; i < tried_shifts; ++i) attempt(std::remainder(i * step_s, period_s));
+    for (; step_s > 1e-4 * period_s; step_s /= 2) {
+      const double centre_s = best_s;
+      attempt(centre_s - step_s / 2);
+      attempt(centre_s + step_s / 2);
+    }
+    const Eigen::VectorXd left = left_with(best_s);
+    const double noise_mm2 = best_mm2 / independent_among(left);
+    return unshifted_mm2 - best_mm2 > square(rejected_at) * noise_mm2 ? best_s : 0;
   }
 
   void prepare_creep() {

@@ -18,6 +18,9 @@
 // noise causes with a probability of 0.1 %; it increases with the number of fitted numbers. The second is 9
 // times the mean square of a model error of 5 % of the motion.
 //
+// An oscillation of the model, for example of a pump, begins each unit with another phase. The shift of the
+// oscillations is estimated if it reduces the residual by more than 3 standard deviations of the noise.
+//
 // A single stroke does not determine the start state under pressure. If the first readings do not distinguish
 // between possible start states, the hysteresis is assumed to be in its steady cycle over the range of the
 // drive.

@@ -98,7 +98,8 @@ void walk(const model::Model& model, std::span<const T> values, const Record& re
   start(chain, record, peak_before_kpa, state);
   sink(std::size_t{0}, chain.reading_mm());
   for (std::size_t i = 1; i < record.size(); ++i) {
-    const model::Surroundings around = surroundings_at(record, i);
+    model::Surroundings around = surroundings_at(record, i);
+    around.oscillation_shift_s += state.oscillation_shift_s;
     const T end(drive_at_end(record, i));
     if (record.held) chain.step(T(0.0), end, around);
     sink(i, chain.step(T(record.duration_s[i]), end, around));

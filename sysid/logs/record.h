@@ -56,6 +56,9 @@ struct StartState {
   /// Rate of the pressure between its last reversal and the first sample. 0: the pressure has been constant
   /// for so long that all states have settled.
   double arrival_kpa_per_s = 0;
+  /// Shift of the oscillations of the model (model::PeriodicDisturbance), in addition to
+  /// Record::oscillation_shift_s.
+  double oscillation_shift_s = 0;
 
   bool operator==(const StartState&) const = default;
 };

@@ -6,6 +6,8 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
+#include "model/blocks/periodic_disturbance.h"
+#include "model/named.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/stick_slip.h"
@@ -157,13 +159,24 @@ class Diagnostician {
   }
 
   void use(std::vector<Record> records) {
-    data_ = make_search_data(std::move(records), deterministic_part(given_, options_.record.drive));
+    const model::Model given = deterministic_part(given_, options_.record.drive);
+    // If the given model contains an oscillation, the phase of each log remains the same during the search.
+    if (oscillates()) {
+      for (Record& record : records)
+        record.oscillation_shift_s += estimated_start(given, record).oscillation_shift_s;
+    }
+    data_ = make_search_data(std::move(records), given);
     data_.threads = options_.threads;
     data_.scales.has_valve = options_.record.drive == Drive::command;
     d_.records = data_.records;
     d_.as_given = evaluate_structure(data_.records, {},
                                      {data_.given.model, estimated_starts(data_.given.model, data_.records)});
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
+  }
+
+  /// Returns true if the given model contains an oscillation.
+  [[nodiscard]] bool oscillates() const {
+    return model::position_of<model::PeriodicDisturbance>(given_).has_value();
   }
 
   /// Hides outliers that occur during a motion. Only the residual of the refitted model shows these outliers.
@@ -259,10 +272,14 @@ class Diagnostician {
   }
 
   Selection search(StructureFit recalibrated, const Division& division, AnotherBase& another) {
-    AlignedLines aligned = aligned_lines(data_.records, recalibrated.residual_mm);
-    for (std::vector<Record>* records : {&data_.records, &data_.thinned, &data_.glimpsed})
-      set_oscillation_shifts(*records, aligned.shifts_s);
-    data_.scales.residual_lines = std::move(aligned.lines);
+    if (oscillates()) {
+      data_.scales.residual_lines = spectrum_peaks(data_.records, recalibrated.residual_mm);
+    } else {
+      AlignedLines aligned = aligned_lines(data_.records, recalibrated.residual_mm);
+      for (std::vector<Record>* records : {&data_.records, &data_.thinned, &data_.glimpsed})
+        set_oscillation_shifts(*records, aligned.shifts_s);
+      data_.scales.residual_lines = std::move(aligned.lines);
+    }
     SelectionOptions options;
     options.seed = options_.seed;
     options.progress = options_.progress;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/transport_delay.h"
 #include "model/catalogue.h"
@@ -233,6 +235,44 @@ TEST(EstimatedStart, RecordWithoutReadingsStartsAtRest) {
   const StartState start = estimated_start(finger, record);
   EXPECT_TRUE(is_at_rest(start, record));
   EXPECT_EQ(start.offset_mm, 0);
+}
+
+/// Returns a log of the finger with an oscillation of 0.3 mm and 1.7 Hz, and with the harmonic of 3.4 Hz.
+Record oscillating(const model::Model& finger, double phase_s) {
+  Log log = simulated(finger, SignalName::tp1, rate_hz, noise_mm, 11);
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    const double angle = 2 * std::numbers::pi * 1.7 * (log.time_s[i] + phase_s);
+    log.displacement_mm[i] += 0.3 * std::sin(angle) + 0.1 * std::cos(2 * angle);
+  }
+  return make_records({log}, {}).front();
+}
+
+model::Model with_oscillation(model::Model finger) {
+  const auto line = [](double sine_mm, double cosine_mm, double frequency_hz) {
+    return model::block_of<model::PeriodicDisturbance>(
+        {{"sine_mm", sine_mm}, {"cosine_mm", cosine_mm}, {"frequency_hz", frequency_hz}});
+  };
+  finger = model::with_block(std::move(finger), line(0.3, 0, 1.7));
+  return model::with_block(std::move(finger), line(0, 0.1, 3.4));
+}
+
+TEST(StartEstimate, ThePhaseOfAnOscillationIsEstimatedForEachLog) {
+  const model::Model finger = loaded("bench_twin"), model = with_oscillation(finger);
+  for (const double phase_s : {0.0, 0.11, 0.29, 0.45}) {
+    SCOPED_TRACE(phase_s);
+    const Record record = oscillating(finger, phase_s);
+    EXPECT_LT(error_mm(model, record, estimated_start(model, record)), 1.1 * noise_mm);
+  }
+}
+
+TEST(StartEstimate, APhaseThatNoReadingShowsIsNotShifted) {
+  const model::Model finger = loaded("bench_twin");
+  const Record still = whole(finger, SignalName::tp1);
+  EXPECT_EQ(estimated_start(finger, still).oscillation_shift_s, 0);
+  const model::Model tiny =
+      model::with_block(finger, model::block_of<model::PeriodicDisturbance>(
+                                    {{"sine_mm", 1e-6}, {"cosine_mm", 0}, {"frequency_hz", 1.7}}));
+  EXPECT_EQ(estimated_start(tiny, still).oscillation_shift_s, 0);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
@@ -115,6 +116,25 @@ TEST(Diagnosis, AnOscillationIsNamedAlthoughItsPhaseDiffersBetweenLogs) {
   };
   EXPECT_NEAR(std::hypot(value("sine_mm"), value("cosine_mm")), amplitude_mm, 0.1 * amplitude_mm);
   EXPECT_NEAR(value("frequency_hz"), frequency_hz, 0.002);
+}
+
+// The extended model contains the phase that the oscillation had in the first log.
+TEST(Diagnosis, AKnownOscillationIsNoErrorOfTheModelInAnotherLog) {
+  model::Model given = loaded("bench_twin");
+  std::vector<Log> logs;
+  for (const double phase : {0.4, 2.1, 4.4}) {
+    Log log = simulated(given, model::SignalName::tp1, 25, noise_mm, 17 + logs.size());
+    for (std::size_t i = 0; i < log.size(); ++i)
+      log.displacement_mm[i] += 0.2 * std::sin(2 * std::numbers::pi * 3.3 * log.time_s[i] + phase);
+    logs.push_back(std::move(log));
+  }
+  given =
+      model::with_block(std::move(given), model::block_of<model::PeriodicDisturbance>(
+                                              {{"sine_mm", 0.2}, {"cosine_mm", 0}, {"frequency_hz", 3.3}}));
+  const auto diagnosis = diagnose(logs, given, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_LT(diagnosis->as_given_rmse_mm, 1.1 * noise_mm);
+  EXPECT_TRUE(diagnosis->causes.empty());
 }
 
 // The log is simulated with the given model, so the model must explain the log. This must hold for every zero
