@@ -2,7 +2,6 @@
 
 #include <zlib.h>
 
-#include <array>
 #include <filesystem>
 
 #include "base/files.h"
@@ -29,20 +28,6 @@ bool is_hdf5(std::string_view bytes) {
   return false;
 }
 
-/// Returns true if the bytes are a MATLAB file of version 4. Such a file has no signature. Its header has
-/// five small numbers and a name that ends with a NUL byte.
-bool is_matlab_4(std::string_view bytes) {
-  constexpr std::size_t header = 20;
-  if (bytes.size() < header) return false;
-  std::array<std::uint32_t, 5> words{};
-  for (std::size_t i = 0; i < header; ++i)
-    words[i / 4] |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[i])) << (8 * (i % 4));
-  const auto [type, rows, columns, imaginary, name] = words;
-  return type < 60 && type % 10 < 3 && rows < most_values && columns < most_values && imaginary < 2 &&
-         name > 1 && name < 64 && bytes.size() > header + name && bytes[header + name - 1] == '\0' &&
-         bytes[header] > ' ';
-}
-
 /// Returns the name of a file format that the import recognises but cannot read; empty if the data have no
 /// such format.
 std::string_view known_but_unread(std::string_view bytes) {
@@ -66,26 +51,23 @@ std::optional<ForeignTable> read_text(const std::string& path, std::string_view 
                        : parse_text_table(path, bytes, options, problems);
 }
 
+/// Reads a MATLAB file of version 4 or 5.
+std::optional<ForeignTable> read_matlab(const std::string& path, const std::string& opened,
+                                        std::string_view bytes, document::Problems& problems) {
+  constexpr std::size_t most_parts = 100'000;
+  const auto variables = mat_variables(path, bytes, most_parts, most_values * sizeof(double), problems);
+  return variables ? read_mat_table(path, opened, *variables, problems) : std::nullopt;
+}
+
 /// Reads the file in the format that its first bytes indicate.
 /// @param opened  path that leads to the file from which `bytes` were read, even if the file at `path` has
 /// been replaced since.
 std::optional<ForeignTable> read_bytes(const std::string& path, const std::string& opened,
                                        std::string_view bytes, const TableOptions& options,
                                        document::Problems& problems) {
-  if (bytes.starts_with("MATLAB 5.0")) {
-    constexpr std::size_t most_parts = 100'000;
-    if (mat_elements_within(bytes, most_parts, most_values * sizeof(double)))
-      return read_mat_table(path, opened, problems);
-    problems.add({path,
-                  {1, 1},
-                  {},
-                  "the cells, structures and objects of the file have more than " +
-                      std::to_string(most_parts) + " parts, or more than 1 GiB",
-                  "save only arrays of numbers"});
-    return std::nullopt;
-  }
+  if (bytes.starts_with("MATLAB 5.0")) return read_matlab(path, opened, bytes, problems);
   if (is_hdf5(bytes)) return read_hdf5_table(path, opened, bytes.starts_with("MATLAB 7.3"), problems);
-  if (is_matlab_4(bytes)) return read_mat_table(path, opened, problems);
+  if (is_matlab_4(bytes)) return read_matlab(path, opened, bytes, problems);
   if (bytes.starts_with(mcap_magic)) return read_mcap_table(path, bytes, options, problems);
   if (bytes.starts_with("TDSm")) return read_tdms_table(path, bytes, problems);
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"))

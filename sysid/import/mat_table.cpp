@@ -15,6 +15,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr int deepest_structure = 8;
+constexpr const char* unread_array = "this array cannot be read";
 
 using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
 using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
@@ -131,7 +132,7 @@ class MatCollector {
     if (!arrays_.has_room(shape.rows, shape.columns)) return arrays_.skip(name, too_large);
     const bool read = Mat_VarReadDataAll(file_, &variable) == 0;
     const std::vector<double> values = read ? values_of(variable, shape.count()) : std::vector<double>{};
-    if (values.empty()) return arrays_.skip(name, "this array cannot be read");
+    if (values.empty()) return arrays_.skip(name, unread_array);
     arrays_.add(name, unit, shape.rows, shape.columns, values);
   }
 
@@ -140,8 +141,8 @@ class MatCollector {
     const std::string number = std::to_string(index + 1);
     if (variable.class_type == MAT_C_CELL) {
       matvar_t* cell = Mat_VarGetCell(&variable, static_cast<int>(index));
-      if (cell != nullptr) collect(*cell, name + "{" + number + "}", {}, depth + 1);
-      return;
+      const std::string here = name + "{" + number + "}";
+      return cell == nullptr ? arrays_.skip(here, unread_array) : collect(*cell, here, {}, depth + 1);
     }
     const std::string here = count == 1 ? name : name + "(" + number + ")";
     if (named_signal(variable, here, index, depth)) return;
@@ -149,7 +150,8 @@ class MatCollector {
     const unsigned fields_count = Mat_VarGetNumberOfFields(&variable);
     for (unsigned i = 0; i < fields_count && fields != nullptr; ++i) {
       matvar_t* field = Mat_VarGetStructFieldByName(&variable, fields[i], index);
-      if (field != nullptr) collect(*field, here + "." + fields[i], {}, depth + 1);
+      const std::string inside = here + "." + fields[i];
+      field == nullptr ? arrays_.skip(inside, unread_array) : collect(*field, inside, {}, depth + 1);
     }
   }
 
@@ -178,7 +180,7 @@ class MatCollector {
 }  // namespace
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
-                                           document::Problems& problems) {
+                                           std::size_t variables, document::Problems& problems) {
   // Prevents libmatio from printing errors, because this function reports them as problems. The parameter
   // `message` has the type `auto*`, because only the libmatio of Debian 13 declares it as const.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
@@ -189,13 +191,17 @@ std::optional<ForeignTable> read_mat_table(const std::string& path, const std::s
   }
   const mat_ft version = Mat_GetVersion(file.get());
   ArrayCollector arrays(path);
-  while (true) {
+  std::size_t read = 0;
+  for (; read < variables; ++read) {
     const MatVariable variable{Mat_VarReadNextInfo(file.get()), Mat_VarFree};
     if (!variable) break;
     // Variables whose names begin with # are internal variables of MATLAB.
     if (variable->name == nullptr || variable->name[0] == '#') continue;
     MatCollector(file.get(), arrays).collect(*variable, variable->name, {}, 0);
   }
+  if (const std::size_t rest = variables - read; rest > 0)
+    arrays.note(std::to_string(rest) + (rest == 1 ? " variable" : " variables") +
+                " at the end of the file cannot be read");
   return arrays.table(version == MAT_FT_MAT4 ? "MATLAB 4" : "MATLAB 5", problems);
 }
 

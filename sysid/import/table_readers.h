@@ -31,9 +31,10 @@ namespace softgrip::sysid {
 /// values (Simulink) becomes a column with the name that the structure states. Complex numbers are skipped.
 /// Objects (timetable, timeseries, table, duration) are skipped too, because only MATLAB can read them. A
 /// note names all skipped variables. `path` is the name of the file in messages; libmatio opens the path
-/// `opened`.
+/// `opened`. If libmatio reads fewer than `variables` variables, a note states the number of the others. Call
+/// mat_variables() first, because libmatio does not detect all damaged files.
 [[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
-                                                         document::Problems& problems);
+                                                         std::size_t variables, document::Problems& problems);
 
 [[nodiscard]] bool is_lvm(std::string_view text);
 
@@ -75,12 +76,22 @@ inline constexpr std::string_view select_sheet_hint = "to select one sheet, use 
                                                           const TableOptions& options,
                                                           document::Problems& problems);
 
-/// Returns true if a .mat file of version 5 is within two bounds. Its cells, structures and objects together
-/// have at most `most_parts` data elements, and the file has at most `most_bytes` bytes after decompression.
-/// These bounds are necessary because a compressed file of a few kilobytes can contain millions of empty
-/// cells. Arrays of numbers at the top level are not counted. In a damaged file, only the readable part is
-/// counted.
-[[nodiscard]] bool mat_elements_within(std::string_view file, std::size_t most_parts, std::size_t most_bytes);
+/// Returns true if the bytes are a MATLAB file of version 4, or the rest of such a file from a variable on.
+/// Such a file has no signature. The header of a variable has five small numbers and a name that ends with a
+/// NUL byte.
+[[nodiscard]] bool is_matlab_4(std::string_view bytes);
+
+/// Returns the number of variables of a .mat file of version 4 or 5. Adds a problem and returns nullopt if a
+/// variable is cut off or damaged, because libmatio returns arbitrary values for such a variable. The sizes
+/// of all data elements are compared with the size of the file, and compressed data with their checksum. The
+/// file is also refused if its cells, structures and objects together have more than `most_parts` data
+/// elements, or more than `most_bytes` bytes after decompression. These bounds are necessary because a
+/// compressed file of a few kilobytes can contain millions of empty cells. Arrays of numbers at the top level
+/// are not counted. If their values have more than `most_bytes` bytes, the values of the last of these arrays
+/// are not checked.
+[[nodiscard]] std::optional<std::size_t> mat_variables(const std::string& path, std::string_view file,
+                                                       std::size_t most_parts, std::size_t most_bytes,
+                                                       document::Problems& problems);
 
 /// Reads text (plain or gzip), XLSX, TDMS, MCAP, MATLAB or HDF5. The first bytes of the file determine its
 /// format; the file name has no influence. If `path` is a folder, the function reads run.csv in this folder.

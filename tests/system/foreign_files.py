@@ -321,6 +321,30 @@ def measurements():
     ]
 
 
+def damaged_matlab():
+    """Returns MATLAB files that are cut off or damaged in the last variable."""
+    names, values = ("time_s", "set_kPa", "tip_mm"), (T, COMMAND, TIP)
+    whole = matlab_5(*map(matrix, names, values))
+    run = matlab_5(structure("run", dict(zip(names, values))))
+    small = matlab_5(*(packed(matrix(*pair)) for pair in zip(names, values)))
+    old = b"".join(map(matlab_4, names, values))
+    cell = matlab_5(cells("log", [*(matrix("", column) for column in values), element(9, bytes(8))]))
+    said = "it is cut off or damaged in the "
+    return [
+        File("cut_values.mat", "MATLAB 5, with the last half of the last variable missing", whole[:-1200], refused=said + "variable 'tip_mm'"),
+        File("cut_name.mat", "MATLAB 5, with a missing end: the file ends before the name of the last variable", whole[:-2420],
+             refused=f"{said}data element at byte {len(whole) - len(matrix('tip_mm', TIP))}"),
+        File("cut_structure.mat", "MATLAB 5: a structure, with a missing end", run[:-1200], refused=said + "variable 'run'"),
+        File("cut_packed.mat", "MATLAB 7: compressed vectors, with a missing end", small[:-200], refused=said + "variable 'tip_mm'"),
+        File("changed_packed.mat", "MATLAB 7: compressed vectors, with one changed bit",
+             small[:-200] + bytes([small[-200] ^ 1]) + small[-199:], refused=said + "variable 'tip_mm'"),
+        File("changed_cell.mat", "MATLAB 5: a cell array whose last cell is not an array", cell,
+             "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm",
+             says="'log{4}' is skipped: this array cannot be read"),
+        File("cut_old.mat", "MATLAB 4, with the last half of the last variable missing", old[:-1200], refused=said + "variable 'tip_mm'"),
+    ]
+
+
 def opendocument(path):
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
@@ -706,7 +730,8 @@ def files():
              + matlab_4("tip_mm", TIP)),
         File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),
         File("cut_off.mat", "MATLAB 5, with a missing end", matlab_5(matrix("time_s", T))[:-900],
-             refused="not contain two arrays of numbers"),
+             refused="it is cut off or damaged in the variable 'time_s'"),
+        *damaged_matlab(),
         File("groups.h5", "HDF5: groups, compressed, units as attributes", hdf5_datasets, columns=MEASURED),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
         File("counter_16_bit.csv", "milliseconds of a 16-bit counter",
