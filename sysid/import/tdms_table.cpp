@@ -1,16 +1,17 @@
 #include "sysid/import/table_readers.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "base/numbers.h"
 #include "sysid/import/byte_scanner.h"
 #include "sysid/import/table.h"
 #include "sysid/import/tdms_value.h"
+#include "sysid/import/tdms_waveform.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -44,9 +45,7 @@ struct TdmsChannel {
   std::uint64_t bytes = 0;  ///< size of the values of this channel in a chunk
   std::vector<double> values;
   std::optional<TdmsStamp> first;  ///< first value, if the channel contains time stamps
-  double increment_s = 0;          ///< sampling interval of a waveform; 0: not a waveform
-  double start_offset_s = 0;
-  std::optional<TdmsStamp> start;
+  TdmsWaveform waveform;
   bool needs_scale = false;
   std::size_t cut_off = 0;  ///< number of values in the incomplete chunk at the end of the file
 };
@@ -95,6 +94,7 @@ class TdmsReader {
   }
 
   std::string refused;
+  std::string hint = "export the data as CSV";  ///< what the user can do if the file is refused
 
  private:
   /// Reads the segment that begins at byte `at`. Returns the position of the next segment.
@@ -217,10 +217,10 @@ class TdmsReader {
       const char* const at = scan.skip(size);
       if (at == nullptr) return false;
       if (size == 0) return unread_type(type, "a property " + quoted(name));
-      if (type == TdmsType::time && name == "wf_start_time") channel.start = tdms_stamp_at(at);
-      if (type == TdmsType::time) continue;
-      if (name == "wf_increment") channel.increment_s = number_at(type, at);
-      if (name == "wf_start_offset") channel.start_offset_s = number_at(type, at);
+      if (type == TdmsType::time)
+        channel.waveform.state(name, tdms_stamp_at(at));
+      else
+        channel.waveform.state(name, number_at(type, at));
     }
     return scan.good();
   }
@@ -236,6 +236,7 @@ class TdmsReader {
       values += size > 0 ? channels_[i].count : 0;
       if (interleaved && (size == 0 || channels_[i].count != channels_[listed_[0]].count))
         refused = "the interleaved channels of the segment contain texts, or have different lengths";
+      refuse_waveform(channels_[i], channels_[i].waveform.begin_segment(channels_[i].values.size()));
     }
     if (!refused.empty() || chunk == 0) return;
     steps_ += listed_.size() * (bytes.size() / chunk + 1);
@@ -248,6 +249,13 @@ class TdmsReader {
       if (!interleaved && piece.size() < chunk) leave_out_blocks(piece);
       bytes.remove_prefix(piece.size());
     }
+  }
+
+  /// Refuses the file if the text `why` is not empty. A channel that is skipped does not cause a refusal.
+  void refuse_waveform(const TdmsChannel& channel, const std::string& why) {
+    if (why.empty() || channel.needs_scale || !refused.empty()) return;
+    refused = "the times of the waveform " + quoted(channel.name) + " are contradictory: " + why;
+    hint = "export each part with its own times to a separate file";
   }
 
   bool has_room(std::uint64_t values) {
@@ -309,7 +317,7 @@ class TdmsReader {
     if (cut_off_bytes_ > 0)
       arrays_.note("incomplete rows or blocks of values are left out: " + std::to_string(cut_off_bytes_) +
                    " bytes");
-    std::map<std::tuple<double, double, std::size_t>, std::string> times;
+    std::map<std::tuple<double, double, std::size_t, std::vector<TdmsWaveform::Series>>, std::string> times;
     std::optional<TdmsStamp> first_start;
     for (TdmsChannel& channel : channels_) {
       if (channel.type == TdmsType::string && channel.has_index) arrays_.skip(channel.name, "a text");
@@ -324,25 +332,30 @@ class TdmsReader {
                      "' has time stamps, which are converted to seconds after the first time stamp");
         channel.unit = "s";
       }
-      if (channel.increment_s > 0 && std::isfinite(channel.increment_s)) {
-        if (channel.start && !first_start) first_start = channel.start;
-        const double start =
-            channel.start_offset_s + (channel.start ? seconds_between(*first_start, *channel.start) : 0);
-        std::string& time = times[{channel.increment_s, start, count}];
+      TdmsWaveform& waveform = channel.waveform;
+      refuse_waveform(channel, waveform.end(count));
+      if (waveform.has_times()) {
+        if (!first_start) first_start = waveform.start();
+        const double start_s = waveform.start_s(first_start);
+        std::string& time = times[{waveform.increment_s(), start_s, count, waveform.series()}];
         if (time.empty()) {
           time = times.size() == 1 ? "wf_time" : "wf_time " + std::to_string(times.size());
-          add_time(time, channel, start);
+          add_time(time, waveform, waveform.times_s(count, start_s));
         }
       }
       arrays_.add(channel.name, channel.unit, count, 1, channel.values);
     }
   }
 
-  void add_time(const std::string& name, const TdmsChannel& channel, double start) {
-    std::vector<double> time_s(channel.values.size());
-    for (std::size_t i = 0; i < time_s.size(); ++i)
-      time_s[i] = start + static_cast<double>(i) * channel.increment_s;
+  void add_time(const std::string& name, const TdmsWaveform& waveform, const std::vector<double>& time_s) {
     arrays_.note("'" + name + "' is computed from wf_start_offset in steps of wf_increment");
+    if (const std::size_t gaps = waveform.series().size() - 1; gaps > 0) {
+      const std::size_t begin = waveform.series()[1].begin;
+      arrays_.note(
+          "'" + name + "' has " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
+          " between segments, as their wf_start_time and wf_start_offset state; the first gap is from " +
+          significant(time_s[begin - 1], 6) + " s to " + significant(time_s[begin], 6) + " s");
+    }
     arrays_.add(name, "s", time_s.size(), 1, time_s);
   }
 
@@ -373,11 +386,8 @@ std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string
     table->account.leave_out(LeftOut::cut_off_line, table->account.rows);
     return table;
   }
-  problems.add({file,
-                {1, 1},
-                {},
-                "a LabVIEW file (.tdms) that cannot be read: " + reader.refused,
-                "export the data as CSV"});
+  problems.add(
+      {file, {1, 1}, {}, "a LabVIEW file (.tdms) that cannot be read: " + reader.refused, reader.hint});
   return std::nullopt;
 }
 

@@ -306,6 +306,13 @@ def measurements():
     steps = {name: tdms.Channel(channel.values, channel.properties | {"wf_increment": 0.01, "wf_start_offset": 0.0})
              for name, channel in times.items() if name != "t"}
     whole = tdms.file([tdms.segment("log", times, pieces=3)])
+
+    def parts(*changes):
+        """Returns a file with three segments of 1 s. Each segment states its start time and its sampling interval."""
+        stated = [({"wf_increment": 0.01, "wf_start_time": 3.8e9 + k} | change) for k, change in enumerate(changes)]
+        return tdms.file([tdms.segment("log", {name: tdms.Channel(channel.values[100 * k:100 * k + 100], channel.properties | properties)
+                                               for name, channel in times.items() if name != "t"})
+                          for k, properties in enumerate(stated)])
     return [
         File("blocks.tdms", "LabVIEW TDMS: each channel in a block, 3 chunks", whole),
         File("interleaved.tdms", "LabVIEW TDMS: interleaved channels", tdms.file([tdms.segment("log", times, interleaved=True)])),
@@ -314,6 +321,14 @@ def measurements():
              says="'log/comment' is skipped: a text", tolerance=1e-6),
         File("waveform.tdms", "LabVIEW TDMS: waveforms", tdms.file([tdms.segment("log", steps)]),
              says="'wf_time' is computed from wf_start_offset in steps of wf_increment"),
+        File("wave_parts.tdms", "LabVIEW TDMS: waveforms in segments that follow without a gap", parts({}, {}, {})),
+        File("wave_gap.tdms", "LabVIEW TDMS: waveforms in 3 segments; the last segment begins 0.4 s later", parts({}, {}, {"wf_start_time": 3.8e9 + 2.4}),
+             columns=BASIC_OF | {"time_s": [round(t + (0.4 if t > 1.995 else 0), 6) for t in T]}, tolerance=1e-6,
+             says="the first gap is from 1.99 s to 2.4 s"),
+        File("wave_rates.tdms", "LabVIEW TDMS: waveforms with 2 sampling intervals", parts({}, {}, {"wf_increment": 0.05}),
+             refused="the waveform 'log/set' are contradictory: wf_increment changes from 0.01 s to 0.05 s"),
+        File("wave_back.tdms", "LabVIEW TDMS: waveforms in segments that overlap", parts({}, {}, {"wf_start_time": 3.8e9 + 1.5}),
+             refused="a segment begins at 1.5 s after the first value, but the previous values end at 1.99 s"),
         File("cut_off.tdms", "LabVIEW TDMS: interleaved channels, with a missing end", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
              columns={key: TRUTH[key][:199] for key in BASIC}, says="the file is cut off", left_out={"cut_off_line": 1}),
         File("daqmx.tdms", "LabVIEW TDMS: raw values of DAQmx", whole[:4] + bytes([whole[4] | 128]) + whole[5:],

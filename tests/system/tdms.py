@@ -26,6 +26,8 @@ def text(value):
 def property_bytes(name, value):
     if isinstance(value, str):
         return text(name) + struct.pack("<I", 0x20) + text(value)
+    if name == "wf_start_time":
+        return text(name) + struct.pack("<IQq", 0x44, int((value % 1) * 2**64), int(value))
     return text(name) + struct.pack("<Id", 10, value)
 
 
