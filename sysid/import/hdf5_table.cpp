@@ -3,9 +3,11 @@
 #include <hdf5.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
+#include "base/numbers.h"
 #include "sysid/import/table.h"
 
 namespace softgrip::sysid {
@@ -84,6 +86,60 @@ bool is_number(hid_t type) {
   return kind == H5T_INTEGER || kind == H5T_FLOAT;
 }
 
+/// Reads an attribute of an object as a number. If the object has no attribute with this name, `value` keeps
+/// its value. Returns false if the attribute is not exactly one number.
+bool read_number(hid_t object, const char* name, double& value) {
+  if (H5Aexists(object, name) <= 0) return true;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  return attribute && is_number(type.get()) && H5Sget_simple_extent_npoints(space.get()) == 1 &&
+         H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0;
+}
+
+/// Attributes of a dataset with packed values, from "NetCDF Users Guide", appendix A, Attribute Conventions.
+struct Packing {
+  double scale = 1;
+  double offset = 0;
+  double fill = missing_value;  ///< stored value that means a missing value; NaN: no such value
+};
+
+/// Reads the attributes of packed values. Returns an error sentence if an attribute is not a number;
+/// otherwise returns an empty text.
+std::string read_packing(hid_t dataset, Packing& packing) {
+  const auto refused = [](const char* name) {
+    return "its attribute " + std::string(name) + " is not a number";
+  };
+  if (!read_number(dataset, "scale_factor", packing.scale) || !std::isfinite(packing.scale))
+    return refused("scale_factor");
+  if (!read_number(dataset, "add_offset", packing.offset) || !std::isfinite(packing.offset))
+    return refused("add_offset");
+  return read_number(dataset, "_FillValue", packing.fill) ? std::string() : refused("_FillValue");
+}
+
+/// Replaces the stored values of a dataset by the values that they mean. Returns a text that states the
+/// changes; empty if no value is changed.
+std::string unpack(const Packing& packing, std::vector<double>& values) {
+  constexpr int digits = 9;
+  const bool is_scaled = packing.scale != 1 || packing.offset != 0;
+  std::size_t missing = 0;
+  for (double& value : values) {
+    const bool is_missing = value == packing.fill;
+    missing += is_missing ? 1 : 0;
+    value = is_missing ? missing_value : value * packing.scale + packing.offset;
+  }
+  std::string changes;
+  if (is_scaled)
+    changes = "the stored values are multiplied by " + significant(packing.scale, digits) +
+              " (scale_factor), and " + significant(packing.offset, digits) + " is added (add_offset)";
+  if (missing > 0)
+    changes += (is_scaled ? "; " : "") + std::to_string(missing) +
+               (missing == 1 ? " stored value of " : " stored values of ") +
+               significant(packing.fill, digits) +
+               (missing == 1 ? " counts as missing (_FillValue)" : " count as missing (_FillValue)");
+  return changes;
+}
+
 /// Converts values from the row-major order of HDF5 to column-major order.
 std::vector<double> by_columns(const std::vector<double>& values, std::size_t rows, std::size_t columns) {
   std::vector<double> turned(values.size());
@@ -149,9 +205,14 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   if (!is_number(type.get()) || !is_matlab_number(matlab_class))
     return arrays.skip(name,
                        matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
+  Packing packing;
+  if (const std::string wrong = read_packing(dataset, packing); !wrong.empty())
+    return arrays.skip(name, wrong);
   std::vector<double> values(size[0] * size[1]);
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     return arrays.skip(name, "this dataset cannot be read");
+  if (const std::string changes = unpack(packing, values); !changes.empty())
+    arrays.note("'" + document::shown(name) + "': " + changes);
   if (matlab_class.empty()) {
     arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
   } else {

@@ -194,6 +194,24 @@ def hdf5_datasets(path):
             file.create_dataset("run1/" + name, data=values, compression="gzip").attrs["units"] = unit
 
 
+PACKED = [round((tip - 5) / 0.0005) for tip in TIP]
+
+
+def hdf5_packed(path):
+    """Writes a file with 16-bit integers, as programs write them for netCDF. Two readings are missing."""
+    import h5py
+    import numpy
+    with h5py.File(path, "w") as file:
+        file["time"] = T
+        file["pressure_set"] = numpy.array([round(10 * value) for value in COMMAND], "i2")
+        file["tip"] = numpy.array([-32767 if i in (50, 51) else value for i, value in enumerate(PACKED)], "i2")
+        file["room"] = T
+        for name, attributes in (("time", {"units": "s"}), ("pressure_set", {"units": "kPa", "scale_factor": 0.1}),
+                                 ("tip", {"units": "mm", "scale_factor": [0.0005], "add_offset": 5.0, "_FillValue": numpy.int16(-32767)}),
+                                 ("room", {"scale_factor": "0.1"})):
+            file[name].attrs.update(attributes)
+
+
 def hdf5_compound(path):
     import h5py
     import numpy
@@ -748,6 +766,10 @@ def files():
              refused="it is cut off or damaged in the variable 'time_s'"),
         *damaged_matlab(),
         File("groups.h5", "HDF5: groups, compressed, units as attributes", hdf5_datasets, columns=MEASURED),
+        File("packed.nc", "HDF5: packed integers with scale_factor, add_offset and _FillValue (netCDF)", hdf5_packed,
+             columns=BASIC_OF | {"displacement_mm": [math.nan if i in (50, 51) else value * 0.0005 + 5 for i, value in enumerate(PACKED)]},
+             says="'tip': the stored values are multiplied by 0.0005 (scale_factor), and 5 is added (add_offset); 2 stored values of "
+                  "-32767 count as missing (_FillValue)"),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
         File("counter_16_bit.csv", "milliseconds of a 16-bit counter",
              table(["t_ms", "set_kpa", "tip_mm"], [[(64000 + round(1000 * t)) % 65536 for t in T], COMMAND, TIP]),
