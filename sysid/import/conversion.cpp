@@ -78,11 +78,12 @@ class Converter {
 
   [[nodiscard]] double value_at(const RoleSource& source, std::size_t row) const {
     double sum = 0;
-    for (const std::size_t column : source.columns) {
+    for (std::size_t k = 0; k < source.columns.size(); ++k) {
+      const std::size_t column = source.columns[k];
       const double value = table_.columns[column].values[row];
-      sum += is_missing(column, value) ? std::nan("") : value;
+      sum += source.conversions[k](is_missing(column, value) ? std::nan("") : value);
     }
-    return source.factor * (sum / static_cast<double>(source.columns.size())) + source.offset;
+    return sum / static_cast<double>(source.columns.size());
   }
 
   ForeignSamples samples_of_table() {
@@ -128,9 +129,9 @@ class Converter {
                                                  : value_at(source, row));
     }
     std::vector<double>& time = samples[Role::time];
-    const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(Role::time)];
-    if (!time.empty()) continue_clock(time, source.factor, rows);
-    for (double& value : time) value = source.factor * value + source.offset;
+    const auto& conversions = sources_.of_roles[static_cast<std::size_t>(Role::time)].conversions;
+    if (!time.empty()) continue_clock(time, conversions.front().factor, rows);
+    for (double& value : time) value = conversions.front()(value);
     for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i) {
       const std::size_t at = table_.position.empty() ? rows[i] : table_.position[rows[i]];
       time.push_back(static_cast<double>(at) / *mapping_.rate_hz);

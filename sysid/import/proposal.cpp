@@ -302,16 +302,21 @@ std::string glimpse(const TableColumn& column) {
 
 }  // namespace
 
+std::string unit_of(const TableColumn& column, const ColumnMapping& mapped, Quantity quantity) {
+  if (!mapped.unit.empty()) return mapped.unit;
+  return !column.unit.empty() ? column.unit : split_unit(column.name, quantity).unit;
+}
+
 std::string unit_text(const ForeignTable& table, const ColumnMapping& column, Quantity quantity) {
   if (!column.unit.empty()) return column.unit;
+  std::vector<std::string> units;
   for (const std::string& word : column.columns) {
     const std::size_t index = column_index(table, word);
     if (index == table.columns.size()) continue;
-    if (!table.columns[index].unit.empty()) return table.columns[index].unit;
-    std::string unit = split_unit(table.columns[index].name, quantity).unit;
-    if (!unit.empty()) return unit;
+    std::string unit = unit_of(table.columns[index], column, quantity);
+    if (!unit.empty() && std::ranges::count(units, unit) == 0) units.push_back(std::move(unit));
   }
-  return {};
+  return with_commas(units, [](const std::string& unit) { return unit; });
 }
 
 Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too) {
@@ -350,7 +355,7 @@ std::string mapping_table(const ForeignTable& table, const Mapping& mapping) {
       const bool here = std::any_of(mapped.columns.begin(), mapped.columns.end(),
                                     [&](const std::string& word) { return column_index(table, word) == i; });
       if (!here) continue;
-      const std::string unit = unit_text(table, mapped, spec.quantity);
+      const std::string unit = unit_of(column, mapped, spec.quantity);
       use = std::string(spec.word) + (column.moments > 0 ? "" : unit.empty() ? " (no unit)" : " in " + unit);
     }
     std::string name = column.name.empty() ? "(no name)" : document::shown(column.name, 40);

@@ -45,6 +45,9 @@ struct Proposal {
 
 /// Returns the unit of a mapped column as text. The first of these sources is used: the mapping, the row of
 /// units, the name of the column. Returns "" if no source states a unit.
+[[nodiscard]] std::string unit_of(const TableColumn& column, const ColumnMapping& mapped, Quantity quantity);
+/// Returns the units of all columns of a role as text, each unit once: "psi, kPa". Returns "" if no column
+/// has a unit.
 [[nodiscard]] std::string unit_text(const ForeignTable& table, const ColumnMapping& column,
                                     Quantity quantity);
 

@@ -54,11 +54,12 @@ class SourceResolver {
       if (index < table_.columns.size()) {
         source.columns.push_back(index);
         check_cells(spec, table_.columns[index]);
+        // If there are several time columns, samples_by_times() converts each of them separately.
+        if (spec.role != Role::time || mapped.columns.size() == 1) find_unit(spec, mapped, word, source);
       } else {
         refuse_column(spec, word);
       }
     }
-    if (!source.columns.empty()) find_unit(spec, mapped, source);
   }
 
   void refuse_column(const RoleSpec& spec, const std::string& word) {
@@ -102,28 +103,29 @@ class SourceResolver {
              " more cells are not numbers");
   }
 
-  void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, RoleSource& source) {
-    // If there are several time columns, samples_by_times() converts each of them separately.
-    if (spec.role == Role::time && source.columns.size() > 1) return;
-    if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
-      return;
-    const bool moments = table_.columns[source.columns.front()].moments > 0;
-    const std::string text = unit_text(table_, mapped, spec.quantity);
+  /// Adds the conversion of the last column of `source`.
+  /// @param named  name or number of this column in the mapping.
+  void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, const std::string& named,
+                 RoleSource& source) {
+    const TableColumn& column = table_.columns[source.columns.back()];
+    Conversion conversion;
+    if (spec.role == Role::time && !find_clock(column, mapped, conversion)) return;
+    const bool moments = column.moments > 0;
+    const std::string text = unit_of(column, mapped, spec.quantity);
     const std::string word(spec.word);
     if (mapped.scale) {
-      source.factor = *mapped.scale;
+      conversion.factor = *mapped.scale;
       if (const auto angle = angle_of_scale(spec, mapped)) {
-        source.factor *= angle->factor;
+        conversion.factor *= angle->factor;
         sources_.output_unit = angle->output;
       }
     } else if (const auto unit =
-                   moments ? Unit{"s", Quantity::time, source.factor} : unit_named(text, spec.quantity);
+                   moments ? Unit{"s", Quantity::time, conversion.factor} : unit_named(text, spec.quantity);
                unit) {
-      source.factor = unit->factor;
-      source.offset = unit->offset;
-      if (spec.role == Role::displacement) sources_.output_unit = unit->output;
+      conversion = {unit->factor, unit->offset};
+      if (spec.role == Role::displacement) set_output_unit(mapped, source, *unit);
     } else if (text.empty()) {
-      refuse(word + ": '" + document::shown(mapped.columns.front()) + "' has no unit",
+      refuse(word + ": '" + document::shown(named) + "' has no unit",
              "--unit " + word + "=" + std::string(spec.unit) + " (known units: " + unit_names(spec.quantity) +
                  ")");
     } else {
@@ -132,17 +134,32 @@ class SourceResolver {
           "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
               "; known units: " + unit_names(spec.quantity));
     }
-    if (mapped.zero) source.offset -= source.factor * *mapped.zero;
+    if (mapped.zero) conversion.offset -= conversion.factor * *mapped.zero;
+    source.conversions.push_back(conversion);
+  }
+
+  /// Refuses the mean of a length and an angle.
+  void set_output_unit(const ColumnMapping& mapped, const RoleSource& source, const Unit& unit) {
+    const auto shown = [&](std::size_t index) {
+      const TableColumn& column = table_.columns[index];
+      return "'" + document::shown(word_of(table_, index), 40) + "' in " +
+             document::shown(unit_of(column, mapped, Quantity::displacement));
+    };
+    if (source.columns.size() > 1 && unit.output != sources_.output_unit)
+      refuse("displacement: " + shown(source.columns.front()) + " and " + shown(source.columns.back()) +
+                 " have no mean, because one column is a length and the other column is an angle",
+             "give only one of the two columns");
+    sources_.output_unit = unit.output;
   }
 
   /// Determines how times with two fields are read. "12:34" can be hh:mm or mm:ss, and the unit of the column
   /// determines which of the two applies.
-  bool find_clock(const TableColumn& column, const ColumnMapping& mapped, RoleSource& source) {
+  bool find_clock(const TableColumn& column, const ColumnMapping& mapped, Conversion& conversion) {
     if (column.short_clocks == 0) return true;
-    const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
+    const std::string unit = lower_case(unit_of(column, mapped, Quantity::time));
     const bool hours = unit == "hh:mm";
-    if (hours && !column.surely_minutes && column.short_clocks == column.moments) source.factor = 60;
-    if (source.factor == 60 || (!hours && (column.surely_minutes || unit == "mm:ss"))) return true;
+    if (hours && !column.surely_minutes && column.short_clocks == column.moments) conversion.factor = 60;
+    if (conversion.factor == 60 || (!hours && (column.surely_minutes || unit == "mm:ss"))) return true;
     refuse("time: '" + document::shown(column.name, 40) +
                (hours ? "' contains times that cannot be hours and minutes"
                       : "' contains times that can be hours and minutes, or minutes and seconds"),

@@ -14,11 +14,19 @@
 
 namespace softgrip::sysid {
 
-/// Columns of one role and the conversion of their values. The value in the log is factor * value + offset.
-struct RoleSource {
-  std::vector<std::size_t> columns;
+/// Conversion of the values of a column. The value in the unit of the log is factor * value + offset.
+struct Conversion {
   double factor = 1;
   double offset = 0;
+
+  [[nodiscard]] double operator()(double value) const { return factor * value + offset; }
+};
+
+/// Columns of one role. The value in the log is the mean of the converted values of all columns.
+struct RoleSource {
+  std::vector<std::size_t> columns;
+  /// Conversion of each column; empty for several time columns (seconds_of() in clock.h converts them).
+  std::vector<Conversion> conversions;
 };
 
 /// Sources of all roles.

@@ -73,6 +73,37 @@ TEST(Convert, AppliesUnitScaleAndZero) {
   EXPECT_NEAR(log.displacement_mm[50], -2 * 6.5, 1e-9);
 }
 
+TEST(Convert, MeanOfTwoColumnsConvertsEachColumnWithItsOwnUnit) {
+  const std::string text = text_of("t_s,p1 (psi),p2 (kPa),x (mm),y (cm)", [](int i, double p, double y) {
+    return shortest(0.01 * i) + "," + shortest(p / 6.894757293168361) + "," + shortest(p) + "," +
+           shortest(y) + "," + shortest(y / 10);
+  });
+  for (const bool psi_first : {true, false}) {
+    Mapping mapping = mapping_of("t_s", psi_first ? "p1 (psi)" : "p2 (kPa)", psi_first ? "x (mm)" : "y (cm)");
+    mapping[Role::command].columns.emplace_back(psi_first ? "p2 (kPa)" : "p1 (psi)");
+    mapping[Role::displacement].columns.emplace_back(psi_first ? "y (cm)" : "x (mm)");
+    const Log log = log_of(text, mapping).log;
+    ASSERT_EQ(log.size(), 200U);
+    EXPECT_NEAR(log.pressure_command_kpa[50], 30, 1e-9);
+    EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9);
+    const std::string shown = mapping_table(table_of(text), mapping);
+    EXPECT_NE(shown.find("command in psi"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("command in kPa"), std::string::npos) << shown;
+    EXPECT_EQ(unit_text(table_of(text), mapping[Role::command], Quantity::pressure),
+              psi_first ? "psi, kPa" : "kPa, psi");
+  }
+}
+
+TEST(Convert, MeanWithAColumnWithoutAUnitIsRefused) {
+  Mapping mapping = mapping_of("t_s", "p1 (psi)", "x (mm)");
+  mapping[Role::command].columns.emplace_back("p2");
+  const std::string said =
+      refusal(text_of("t_s,p1 (psi),p2,x (mm)",
+                      [](int i, double p, double y) { return plain(i, p, p) + "," + shortest(y); }),
+              mapping);
+  EXPECT_NE(said.find("command: 'p2' has no unit"), std::string::npos) << said;
+}
+
 TEST(Convert, AnAngleMakesALogInDegrees) {
   for (const auto& [name, factor] :
        {std::pair("theta_deg", 1.0), std::pair("bend [rad]", 1 / model::deg_per_rad),

@@ -35,8 +35,8 @@ TEST(RoleSources, ColumnsHaveTheFactorOfTheUnit) {
   document::Problems problems;
   const RoleSources sources = resolve_sources(table(), mapping("x"), problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
-  EXPECT_DOUBLE_EQ(sources.of_roles[static_cast<std::size_t>(Role::time)].factor, 1e-3);
-  EXPECT_DOUBLE_EQ(sources.of_roles[static_cast<std::size_t>(Role::pressure)].factor, 100);
+  EXPECT_DOUBLE_EQ(sources.of_roles[static_cast<std::size_t>(Role::time)].conversions.at(0).factor, 1e-3);
+  EXPECT_DOUBLE_EQ(sources.of_roles[static_cast<std::size_t>(Role::pressure)].conversions.at(0).factor, 100);
   EXPECT_EQ(sources.of_roles[static_cast<std::size_t>(Role::displacement)].columns,
             std::vector<std::size_t>{2});
   EXPECT_TRUE(sources.uses(2));
@@ -47,6 +47,17 @@ TEST(RoleSources, ColumnWithoutAUnitIsRefused) {
   document::Problems problems;
   static_cast<void>(resolve_sources(table(), mapping("y"), problems));
   EXPECT_NE(problems.format().find("displacement: 'y' has no unit"), std::string::npos) << problems.format();
+}
+
+TEST(RoleSources, MeanOfALengthAndAnAngleIsRefused) {
+  ForeignTable mixed = table();
+  mixed.columns[3].unit = "deg";
+  Mapping both = mapping("x");
+  both[Role::displacement].columns.emplace_back("y");
+  document::Problems problems;
+  static_cast<void>(resolve_sources(mixed, both, problems));
+  EXPECT_NE(problems.format().find("displacement: 'x' in mm and 'y' in deg have no mean"), std::string::npos)
+      << problems.format();
 }
 
 TEST(RoleSources, ScaledDisplacementCanBeAnAngle) {
