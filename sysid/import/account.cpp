@@ -18,6 +18,7 @@ constexpr auto reasons = enum_table<LeftOut, Reason>({
     {LeftOut::other_channel, {"other_channel", "of another channel", false}},
     {LeftOut::outside_stretch, {"outside_stretch", "outside the times --from-s and --to-s", false}},
     {LeftOut::empty, {"empty", "without content", false}},
+    {LeftOut::comment, {"comment", "in comments", false}},
     {LeftOut::bad_line, {"bad_line", "in lines that cannot be read", true}},
     {LeftOut::cut_off_line, {"cut_off_line", "in the incomplete last part of the file", true}},
     {LeftOut::no_time, {"no_time", "without a time", true}},

@@ -15,6 +15,7 @@ enum class LeftOut : std::uint8_t {
   other_channel,
   outside_stretch,
   empty,
+  comment,
   bad_line,
   cut_off_line,
   no_time,
@@ -22,7 +23,7 @@ enum class LeftOut : std::uint8_t {
   before_command,
   hole
 };
-inline constexpr std::size_t left_out_count = 9;
+inline constexpr std::size_t left_out_count = 10;
 
 /// Returns the identifier of a reason in the JSON output.
 [[nodiscard]] std::string_view word_of(LeftOut reason);

@@ -67,7 +67,8 @@ struct ForeignTable {
   std::vector<TableColumn> columns;
   std::vector<int> line;  ///< for each row of a text file, its line number; empty for a binary file
   /// For each row, its position in the file, counted from 0. Skipped lines count too, except lines of other
-  /// fingers. Empty: no line was skipped, so the position is the index of the row.
+  /// fingers. Empty lines and rows in comments between two rows are skipped lines. Empty: no line was
+  /// skipped, so the position is the index of the row.
   std::vector<std::size_t> position;
   std::vector<std::string>
       channels;  ///< names of the fingers in the column `channel_column`, in the order of their first rows

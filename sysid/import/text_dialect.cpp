@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 #include "sysid/import/cell_value.h"
 #include "sysid/import/units.h"
@@ -23,9 +24,8 @@ struct Row {
   std::size_t numbers = 0;  ///< number of cells with a number or a timestamp
 };
 
-Row row_of(std::string_view line, char separator, const TableOptions& options, std::vector<Cell>& cells) {
+Row row_of(const std::vector<Cell>& cells, const TableOptions& options) {
   Row row;
-  if (!split_line(line, separator, cells)) return row;
   row.cells = cells.size();
   for (const Cell& cell : cells) {
     const CellKind kind = cell_value(cell.text, options.missing).kind;
@@ -35,8 +35,10 @@ Row row_of(std::string_view line, char separator, const TableOptions& options, s
   return row;
 }
 
-/// Returns true if a line is a row of the table. Such a row has `width` cells. At least one cell is a number
-/// or a timestamp, and more than half of the cells contain a number, a timestamp or a missing value.
+Row row_of(std::string_view line, char separator, const TableOptions& options, std::vector<Cell>& cells) {
+  return split_line(line, separator, cells) ? row_of(cells, options) : Row{};
+}
+
 bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
@@ -177,10 +179,7 @@ class Heading {
       if (comment.number < first) last = &comment;
     }
     if (last == nullptr) return;
-    std::string_view text = trimmed(last->text);
-    while (!text.empty() && (text.front() == '#' || text.front() == '%' || text.front() == '/'))
-      text.remove_prefix(1);
-    std::vector<std::string> names = split_names({last->number, text});
+    std::vector<std::string> names = split_names(*last);
     const bool fits =
         names.size() == dialect_.width && std::none_of(names.begin(), names.end(), [](const auto& name) {
           return name.empty() || cell_value(name, {}).kind == CellKind::number;
@@ -215,16 +214,26 @@ class Heading {
 TextLines text_lines(std::string_view text) {
   TextLines lines;
   int number = 0;
+  int empty = 0;
   for (const std::string_view line : lines_of(text)) {
     ++number;
     const std::string_view said = trimmed(line);
-    if (said.empty()) continue;
-    const bool comment = said.front() == '#' || said.front() == '%' || said.starts_with("//");
+    const bool comment = said.starts_with('#') || said.starts_with('%') || said.starts_with("//");
     // A line that begins with "#N/A" is a row, because "#N/A" is a cell and not the beginning of a comment.
     const bool cell = said.starts_with("#N/A") || said.starts_with("#n/a");
-    (comment && !cell ? lines.comments : lines.content).push_back({number, line});
+    if (said.empty()) {
+      ++empty;
+    } else if (comment && !cell) {
+      lines.comments.push_back({number, said.substr(std::min(said.find_first_not_of("#%/"), said.size()))});
+    } else {
+      lines.content.push_back({number, line, std::exchange(empty, 0)});
+    }
   }
   return lines;
+}
+
+bool is_row(const std::vector<Cell>& cells, std::size_t width, const TableOptions& options) {
+  return is_data(row_of(cells, options), width);
 }
 
 bool split_line(std::string_view line, char separator, std::vector<Cell>& cells) {

@@ -21,18 +21,24 @@ namespace softgrip::sysid {
 struct TextLine {
   int number = 0;
   std::string_view text;
+  int empty_above =
+      0;  ///< number of empty lines between this line and the previous line of TextLines::content
 };
 
 /// The comments of a text (#, %, //), and the lines that are neither empty nor comments.
 struct TextLines {
   std::vector<TextLine> content;
-  std::vector<TextLine> comments;
+  std::vector<TextLine> comments;  ///< texts of the comments without the marks at their begin
 };
 [[nodiscard]] TextLines text_lines(std::string_view text);
 
 /// Splits a line into cells. Consecutive blanks count as one separator. Returns false if a quote is not
 /// closed.
 bool split_line(std::string_view line, char separator, std::vector<Cell>& cells);
+
+/// Returns true if the cells of a line are a row of a table with `width` columns. At least one cell is a
+/// number or a timestamp, and more than half of the cells contain a number, a timestamp or a missing value.
+[[nodiscard]] bool is_row(const std::vector<Cell>& cells, std::size_t width, const TableOptions& options);
 
 struct Dialect {
   char separator = ',';

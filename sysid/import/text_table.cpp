@@ -22,13 +22,23 @@ std::string name_of_separator(char separator) {
   return std::string("'") + separator + "'";
 }
 
+/// Returns the number of empty lines above every row except the first. Some programs end each row with two
+/// line breaks.
+int empty_above_each_row(const TextLines& lines, std::size_t first_row) {
+  int fewest = first_row + 1 < lines.content.size() ? lines.content[first_row + 1].empty_above : 0;
+  for (std::size_t i = first_row + 1; i < lines.content.size(); ++i)
+    fewest = std::min(fewest, lines.content[i].empty_above);
+  return fewest;
+}
+
 /// Reads the rows of numbers into columns.
 class RowReader {
  public:
   /// @param text  the whole text, of which the rows are parts.
-  RowReader(std::string_view text, const Dialect& dialect, const TableOptions& options, ForeignTable& table,
-            LogReporter& report)
+  RowReader(std::string_view text, const TextLines& lines, const Dialect& dialect,
+            const TableOptions& options, ForeignTable& table, LogReporter& report)
       : text_(text),
+        lines_(lines),
         dialect_(dialect),
         options_(options),
         table_(table),
@@ -48,6 +58,7 @@ class RowReader {
   }
 
   void read(const TextLine& line, bool is_last) {
+    count_omitted(line);
     ++table_.account.rows;
     const bool closed = split_line(line.text, dialect_.separator, cells_);
     drop_extra_cell();
@@ -94,6 +105,28 @@ class RowReader {
     if (extra && trimmed(cells_.back().text).empty()) cells_.pop_back();
   }
 
+  /// Counts the empty lines and the rows in comments between the previous row and `line`. With a sampling
+  /// rate, each of these lines is one sampling interval.
+  void count_omitted(const TextLine& line) {
+    const bool is_first = table_.account.rows == 0;
+    int empty = line.empty_above - empty_above_each_;
+    for (; comment_ < lines_.comments.size() && lines_.comments[comment_].number < line.number; ++comment_) {
+      if (is_first || !split_line(lines_.comments[comment_].text, dialect_.separator, cells_)) continue;
+      drop_extra_cell();
+      if (!is_row(cells_, dialect_.width, options_)) continue;
+      omit(LeftOut::comment);
+      empty -= empty_above_each_;
+    }
+    cells_.clear();
+    for (; !is_first && empty > 0; --empty) omit(LeftOut::empty);
+  }
+
+  void omit(LeftOut reason) {
+    ++table_.account.rows;
+    table_.account.leave_out(reason);
+    if (may_belong()) ++position_;
+  }
+
   void leave_out(const TextLine& line, bool is_last, bool closed) {
     if (is_last && (cells_.size() < dialect_.width || !closed)) {
       table_.account.leave_out(LeftOut::cut_off_line);
@@ -111,7 +144,7 @@ class RowReader {
     }
   }
 
-  /// Returns true if a line with a wrong number of cells can belong to the selected finger.
+  /// Returns true if a line that is left out can belong to the selected finger.
   [[nodiscard]] bool may_belong() const {
     return channel_ == dialect_.width || options_.channel.empty() || channel_ >= cells_.size() ||
            cell_text(cells_[channel_].text) == options_.channel;
@@ -181,6 +214,7 @@ class RowReader {
   };
 
   std::string_view text_;
+  const TextLines& lines_;
   const Dialect& dialect_;
   const TableOptions& options_;
   ForeignTable& table_;
@@ -194,6 +228,8 @@ class RowReader {
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;
+  int empty_above_each_ = empty_above_each_row(lines_, dialect_.first_row);
+  std::size_t comment_ = 0;   ///< index of the first comment below the previous row
   std::size_t position_ = 0;  ///< ForeignTable::position of the next row
 };
 
@@ -219,7 +255,7 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
   table.is_text = table.has_separators = true;
   table.notes = text->notes;
   LogReporter report(file, problems);
-  RowReader rows(text->text, *dialect, options, table, report);
+  RowReader rows(text->text, lines, *dialect, options, table, report);
   for (std::size_t i = dialect->first_row; i < lines.content.size(); ++i)
     rows.read(lines.content[i], i + 1 == lines.content.size());
   rows.finish();

@@ -380,6 +380,48 @@ TEST(Convert, RateCountsSkippedLines) {
   EXPECT_NEAR(log.time_s.back(), 1.99, 1e-9);
 }
 
+/// Returns the log of a text with a sampling rate of 100 Hz.
+ImportedLog at_100_hz(const std::string& text) {
+  Mapping mapping = mapping_of("", "p_cmd_kpa", "tip_mm");
+  mapping[Role::time].columns.clear();
+  mapping.rate_hz = 100;
+  return log_of(text, mapping);
+}
+
+TEST(Convert, RateCountsEmptyLinesAndRowsInComments) {
+  const ImportedLog result = at_100_hz(text_of("p_cmd_kpa,tip_mm",
+                                               [](int i, double p, double y) {
+                                                 const std::string row = shortest(p) + "," + shortest(y);
+                                                 if (i == 30) return "# a remark\n" + row;
+                                                 if (i >= 60 && i < 68) return "#" + row;
+                                                 return i >= 100 && i < 103 ? "" : row;
+                                               }) +
+                                       "# 20,4\n\n\n");
+  ASSERT_EQ(result.log.size(), 189U);
+  EXPECT_NEAR(result.log.time_s[59], 0.59, 1e-9);
+  EXPECT_NEAR(result.log.time_s[60], 0.68, 1e-9) << "8 rows are in comments";
+  EXPECT_NEAR(result.log.time_s[92], 1.03, 1e-9) << "3 lines are empty";
+  EXPECT_NEAR(result.log.time_s.back(), 1.99, 1e-9);
+  EXPECT_EQ(result.account.sentence(), "200 rows: 189 used, 11 left out (3 without content, 8 in comments)");
+}
+
+TEST(Convert, RateCountsNoEmptyLineThatFollowsEveryRow) {
+  const ImportedLog result = at_100_hz(text_of("p_cmd_kpa,tip_mm", [](int i, double p, double y) {
+    const std::string row = shortest(p) + "," + shortest(y) + "\n";
+    return i == 50 ? "#" + row : row;
+  }));
+  ASSERT_EQ(result.log.size(), 199U);
+  EXPECT_NEAR(result.log.time_s.back(), 1.99, 1e-9);
+  EXPECT_EQ(result.account.sentence(), "200 rows: 199 used, 1 left out (1 in comments)");
+}
+
+TEST(Convert, RowsInCommentsAreCountedWithATimeColumn) {
+  const ImportedLog result = log_of(text_of("t_s,p_cmd_kpa,tip_mm", [](int i, double p, double y) {
+    return (i == 70 ? "#" : "") + plain(i, p, y);
+  }));
+  EXPECT_EQ(result.account.sentence(), "200 rows: 199 used, 1 left out (1 in comments)");
+}
+
 TEST(Convert, RateCountsSkippedLinesOfTheSelectedFingerOnly) {
   const auto row = [](int i, double p, double y) {
     const std::string left = "left," + shortest(p), right = "right," + shortest(p);

@@ -177,7 +177,11 @@ class Generator {
       ++file_.rows;
       ++file_.joined;
     } else {
-      if (kind == 5) file_.text += "\n# a remark\n";
+      if (kind == 5) {
+        file_.text += "\n# a remark\n";
+        ++file_.rows;
+        ++file_.left_out[LeftOut::empty];
+      }
       keep(ms, command, reading);
     }
     line(cells);
