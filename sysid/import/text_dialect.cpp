@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "sysid/import/cell_value.h"
@@ -230,6 +231,29 @@ TextLines text_lines(std::string_view text) {
     }
   }
   return lines;
+}
+
+bool begins_other_table(const std::vector<Cell>& cells, const Dialect& dialect, const TableOptions& options) {
+  std::set<std::string> texts;
+  bool has_known_name = false;
+  for (const Cell& cell : cells) {
+    const CellKind kind = cell_value(cell.text, options.missing).kind;
+    if (kind == CellKind::missing) continue;
+    const std::string text(trimmed(cell_text(cell.text)));
+    if (kind != CellKind::text || !texts.insert(text).second) return false;
+    has_known_name = has_known_name || std::ranges::count(dialect.names, text) > 0;
+  }
+  const bool fills_row = cells.size() == dialect.width && texts.size() == cells.size();
+  if (texts.size() < 2 || !(has_known_name || fills_row)) return false;
+  std::vector<std::string> line = texts_of(cells);
+  if (line == dialect.names) return false;
+  std::transform(line.begin(), line.end(), line.begin(), unbracketed);
+  return line != dialect.units;
+}
+
+bool reorders_names(const std::vector<Cell>& cells, const Dialect& dialect) {
+  const std::vector<std::string> line = texts_of(cells);
+  return line != dialect.names && std::ranges::is_permutation(line, dialect.names);
 }
 
 bool is_row(const std::vector<Cell>& cells, std::size_t width, const TableOptions& options) {

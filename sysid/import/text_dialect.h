@@ -52,6 +52,14 @@ struct Dialect {
   bool extra_cell = false;
 };
 
+/// Returns true if a line below the first row contains the column names or the units of another table. The
+/// line does not repeat the names or the units of this table. It has two or more different texts and no
+/// number. Each column has a text, or one text is a column name of this table.
+[[nodiscard]] bool begins_other_table(const std::vector<Cell>& cells, const Dialect& dialect,
+                                      const TableOptions& options);
+/// Returns true if the cells of a comment are the column names of the table in another order.
+[[nodiscard]] bool reorders_names(const std::vector<Cell>& cells, const Dialect& dialect);
+
 /// Detects the format from the rows of numbers. Adds a problem and returns nullopt if the text has no rows of
 /// numbers, or if the number of names above the rows differs from the number of columns.
 [[nodiscard]] std::optional<Dialect> dialect_of(const std::string& file, const TextLines& lines,

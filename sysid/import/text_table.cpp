@@ -62,6 +62,7 @@ class RowReader {
     ++table_.account.rows;
     const bool closed = split_line(line.text, dialect_.separator, cells_);
     drop_extra_cell();
+    if (closed && !is_last && begins_other_table(cells_, dialect_, options_)) return refuse_table(line);
     if (cells_.size() != dialect_.width || !closed) return leave_out(line, is_last, closed);
     cut_off_.add(line.text, cells_.back().text);
     if (is_last && cut_off_.may_be_cut_off(text_))
@@ -113,12 +114,22 @@ class RowReader {
     for (; comment_ < lines_.comments.size() && lines_.comments[comment_].number < line.number; ++comment_) {
       if (is_first || !split_line(lines_.comments[comment_].text, dialect_.separator, cells_)) continue;
       drop_extra_cell();
+      if (reorders_names(cells_, dialect_)) refuse_table(lines_.comments[comment_]);
       if (!is_row(cells_, dialect_.width, options_)) continue;
       omit(LeftOut::comment);
       empty -= empty_above_each_;
     }
     cells_.clear();
     for (; !is_first && empty > 0; --empty) omit(LeftOut::empty);
+  }
+
+  /// Refuses the names of a second table. The columns below these names can have another meaning.
+  void refuse_table(const TextLine& line) {
+    report_.add(
+        "table", {line.number, 1}, line.text,
+        "a second table begins here: this line has column names or units, and they are not those of the "
+        "first table",
+        "split the file before this line, and import each part");
   }
 
   void omit(LeftOut reason) {

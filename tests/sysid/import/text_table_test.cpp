@@ -96,6 +96,37 @@ TEST(TextTable, OnlyTheLastLineMayBeTruncated) {
             std::string::npos);
 }
 
+TEST(TextTable, NamesOfASecondTableAreRefused) {
+  TableOptions skip;
+  skip.skip_bad_lines = true;
+  const std::string begin = "t,set,tip\n[s],[kPa],[mm]\n0,1,5\n1,2,6\n";
+  for (const char* names : {"t,tip,set", "a,b,c", "t,tip", "[s],[psi],[mm]", ",set,t", "t,set,tip,flow"}) {
+    for (const TableOptions& options : {TableOptions{}, skip}) {
+      const std::string said = refusal(begin + names + "\n2,7,3\n3,8,4\n", options);
+      EXPECT_NE(said.find("t.csv:5:1: a second table begins here"), std::string::npos) << names << said;
+      EXPECT_NE(said.find("split the file before this line"), std::string::npos) << said;
+    }
+  }
+  document::Problems problems;
+  EXPECT_FALSE(parse_text_table("t.csv", "# t x\n0 1\n1 2\n# x t\n2 3\n3 4\n", {}, problems));
+  ASSERT_EQ(problems.size(), 1U) << problems.format();
+  EXPECT_NE(problems.format().find("t.csv:4:1: a second table"), std::string::npos);
+}
+
+TEST(TextTable, RepeatedNamesAndOtherWordsAreBadLines) {
+  TableOptions skip;
+  skip.skip_bad_lines = true;
+  skip.missing = {"over"};
+  const ForeignTable table = table_of(
+      "t,set,tip\n[s],[kPa],[mm]\n0,1,5\n1,2,6\nt,set,tip\n[s],[kPa],[mm]\nerr,err,err\nTest,stopped\n2,over,"
+      "lost\n"
+      "3,2,7\n",
+      skip);
+  EXPECT_EQ(table.columns[0].bad_rows, (std::vector<std::size_t>{2, 3, 4}));
+  EXPECT_EQ(table.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)], 1U);
+  EXPECT_EQ(table_of("# t x\n0 1\n1 2\n# t x\n# a pause\n2 3\n").columns[1].values.size(), 3U);
+}
+
 TEST(TextTable, AShortLastCellWithoutALineBreakIsAWarning) {
   const std::string rows = "t,x\n0,10.5\n1,12.5\n2,";
   const auto warnings = table_of(rows + "1").warnings;
