@@ -36,6 +36,16 @@ std::optional<double> number_of(std::string_view text, CellValue& value) {
   return to_number(pointed);
 }
 
+/// Returns true if the text is a whole number in groups of three digits, with a comma between the groups.
+bool has_groups_of_thousands(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[text.size() - 1 - i];
+    if (i % 4 == 3 ? c != ',' : std::isdigit(static_cast<unsigned char>(c)) == 0) return false;
+  }
+  return text.size() > 4 && text.size() % 4 != 0 && text.front() != '0';
+}
+
 /// Returns the index of the first word in the list `missing` that equals the cell; -1 if no word equals the
 /// cell.
 int place_among(const std::vector<std::string>& missing, std::string_view text,
@@ -59,6 +69,7 @@ CellValue cell_value(std::string_view cell, const std::vector<std::string>& miss
   CellValue value;
   const std::string_view text = trimmed(unquoted(cell));
   const auto number = number_of(text, value);
+  value.grouped = has_groups_of_thousands(text);
   if (!missing.empty()) value.missing_word = place_among(missing, text, number);
   if (value.missing_word >= 0 || says_missing(text, number)) {
     value.kind = CellKind::missing;

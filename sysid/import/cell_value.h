@@ -25,6 +25,8 @@ struct CellValue {
   int missing_word = -1;
   bool with_comma = false;  ///< true: the number has a decimal comma
   bool with_point = false;  ///< true: the number has a decimal point
+  /// True: each comma of the cell can separate thousands, as in "20,000" and "1,234,567".
+  bool grouped = false;
 };
 
 /// Interprets a cell. A comma followed by digits is a decimal comma. A cell with a comma and a point

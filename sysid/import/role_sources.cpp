@@ -53,7 +53,7 @@ class SourceResolver {
       const std::size_t index = column_index(table_, word);
       if (index < table_.columns.size()) {
         source.columns.push_back(index);
-        check_cells(spec, table_.columns[index]);
+        check_cells(spec, word, table_.columns[index]);
         // If there are several time columns, samples_by_times() converts each of them separately.
         if (spec.role != Role::time || mapped.columns.size() == 1) find_unit(spec, mapped, word, source);
       } else {
@@ -76,12 +76,20 @@ class SourceResolver {
                           : "is '" + document::shown(near) + "' meant?");
   }
 
-  void check_cells(const RoleSpec& spec, const TableColumn& column) {
+  void check_cells(const RoleSpec& spec, const std::string& named, const TableColumn& column) {
     if (mapping_.skip_bad_lines) {
       sources_.bad_rows.insert(column.bad_rows.begin(), column.bad_rows.end());
     } else {
       refuse_bad_cells(spec, column);
     }
+    if (!column.ambiguous_comma.empty())
+      refuse(
+          std::string(spec.word) + ": the comma in the cell '" + document::shown(column.ambiguous_comma, 40) +
+              "' of '" + document::shown(named, 40) +
+              "' can be a decimal comma or separate thousands, because the numbers of this column do not all "
+              "have one comma",
+          "export the file without thousands separators. If the comma is a decimal comma, export the same "
+          "number of decimals in each cell");
     const bool time = spec.role == Role::time;
     const auto numbers = static_cast<std::size_t>(
         std::count_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); }));

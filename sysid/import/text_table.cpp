@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sysid/import/cell_value.h"
+#include "sysid/import/decimal_commas.h"
 #include "sysid/import/fingers.h"
 #include "sysid/import/text_dialect.h"
 #include "sysid/import/units.h"
@@ -75,6 +76,8 @@ class RowReader {
   }
 
   void finish() {
+    for (std::size_t i = 0; i < dialect_.width; ++i)
+      table_.columns[i].ambiguous_comma = commas_[i].ambiguous_cell(table_.columns[i].values);
     if (skipped_.empty()) return;
     std::string lines;
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
@@ -179,6 +182,7 @@ class RowReader {
   void read_cell(std::size_t i, const TextLine& line) {
     TableColumn& column = table_.columns[i];
     const CellValue cell = cell_value(cells_[i].text, options_.missing);
+    commas_[i].add(cell, cells_[i].text);
     if (cell.with_comma && comma_.number == 0) comma_ = line;
     if (cell.with_point && point_.number == 0) point_ = line;
     switch (cell.kind) {
@@ -231,6 +235,7 @@ class RowReader {
   ForeignTable& table_;
   LogReporter& report_;
   std::vector<Clock> moments_;
+  std::vector<DecimalCommas> commas_{dialect_.width};
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
   /// True: the column that identifies the finger has the same name as in a log.

@@ -60,6 +60,22 @@ TEST(RoleSources, MeanOfALengthAndAnAngleIsRefused) {
       << problems.format();
 }
 
+TEST(RoleSources, UsedColumnWithAmbiguousCommasIsRefused) {
+  ForeignTable ambiguous = table();
+  ambiguous.columns[2].ambiguous_comma = "20,000";
+  document::Problems problems;
+  static_cast<void>(resolve_sources(ambiguous, mapping("x"), problems));
+  EXPECT_NE(
+      problems.format().find("displacement: the comma in the cell '20,000' of 'x' can be a decimal comma"),
+      std::string::npos)
+      << problems.format();
+  EXPECT_NE(problems.format().find("export the file without thousands separators"), std::string::npos);
+  ambiguous.columns[3].unit = "mm";
+  document::Problems none;
+  static_cast<void>(resolve_sources(ambiguous, mapping("y"), none));
+  EXPECT_TRUE(none.empty()) << none.format();
+}
+
 TEST(RoleSources, ScaledDisplacementCanBeAnAngle) {
   ColumnMapping mapped;
   mapped.columns = {"x"};

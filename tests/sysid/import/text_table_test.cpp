@@ -156,6 +156,13 @@ TEST(CellValue, ThousandsSeparatorsAreRejected) {
   EXPECT_EQ(cell_value(" \"-1,5e3\" ", {}).number, -1500);
 }
 
+TEST(TextTable, CellsWithAmbiguousCommasAreNamed) {
+  const ForeignTable table = table_of("t,x,y\n1,\"20,000\",\"0,5\"\n2,467,3\n");
+  EXPECT_EQ(table.columns[0].ambiguous_comma, "");
+  EXPECT_EQ(table.columns[1].ambiguous_comma, "20,000");
+  EXPECT_EQ(table.columns[2].ambiguous_comma, "");
+}
+
 TEST(TextEncoding, EncodingsAreConvertedToUtf8) {
   EXPECT_EQ(utf8_of("\xef\xbb\xbf"
                     "a"),
