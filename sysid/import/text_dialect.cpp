@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -210,6 +212,52 @@ class Heading {
   document::Problems& problems_;
 };
 
+/// Returns the number of a cell; NaN if the cell is not a number.
+double number_in(const Cell& cell, const TableOptions& options) {
+  const CellValue value = cell_value(cell.text, options.missing);
+  return value.kind == CellKind::number ? value.number : missing_value;
+}
+
+/// Returns true if the cells are the numbers 0, 1, 2, ..., with or without an empty cell before them.
+bool are_indices(const std::vector<Cell>& cells) {
+  const std::size_t first = !cells.empty() && trimmed(cells.front().text).empty() ? 1 : 0;
+  for (std::size_t i = first; i < cells.size(); ++i) {
+    if (cell_text(trimmed(cells[i].text)) != std::to_string(i - first)) return false;
+  }
+  return cells.size() > first + 1;
+}
+
+/// Returns true if the first row contains the indices of the columns instead of values. Such a row begins
+/// with an empty cell, or more than half of the columns do not continue this row. A column does not continue
+/// it if the first step is longer than twice the longest of the later steps, or if only the first step is 0.
+bool has_indices_as_names(const std::vector<TextLine>& content, const Dialect& dialect,
+                          const TableOptions& options) {
+  std::vector<std::vector<double>> rows;
+  std::vector<Cell> cells;
+  for (std::size_t i = dialect.first_row; i < content.size() && rows.size() < looked_at; ++i) {
+    split_line(content[i].text, dialect.separator, cells);
+    if (rows.empty() && !are_indices(cells)) return false;
+    if (cells.size() != dialect.width) continue;
+    rows.emplace_back();
+    for (const Cell& cell : cells) rows.back().push_back(number_in(cell, options));
+  }
+  if (rows.size() < 3) return false;
+  if (std::isnan(rows[0][0])) return !std::isnan(rows[1][0]);
+  std::size_t breaks = 0;
+  for (std::size_t column = 0; column < dialect.width; ++column) {
+    const auto step = [&](std::size_t i) { return std::abs(rows[i + 1][column] - rows[i][column]); };
+    double longest = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
+      longest = std::max(longest, step(i));
+      shortest = std::min(shortest, step(i));
+    }
+    const bool continues = step(0) <= 2 * longest && (step(0) > 0 || shortest == 0);
+    breaks += continues ? 0 : 1;
+  }
+  return 2 * breaks > dialect.width;
+}
+
 }  // namespace
 
 TextLines text_lines(std::string_view text) {
@@ -308,6 +356,16 @@ std::optional<Dialect> dialect_of(const std::string& file, const TextLines& line
   dialect.width = best.width;
   dialect.first_row = first;
   if (!Heading(file, lines, dialect, problems).read()) return std::nullopt;
+  if (dialect.names.empty() && has_indices_as_names(lines.content, dialect, options)) {
+    const TextLine& indices = lines.content[first];
+    problems.add({file,
+                  {indices.number, 1},
+                  std::string(indices.text.substr(0, 200)),
+                  "this line has the numbers of the columns instead of their names",
+                  "replace the numbers by names such as time_s, command_kpa and tip_mm. If the numbers are "
+                  "values, add a line with the names above this line"});
+    return std::nullopt;
+  }
   return dialect;
 }
 

@@ -69,6 +69,23 @@ TEST(TextTable, ColumnNamesMayBeInACommentOrMissing) {
   EXPECT_EQ(word_of(nameless, 1), "2");
 }
 
+TEST(TextTable, NumbersOfTheColumnsAreNoSample) {
+  for (const char* text :
+       {"0,1,2\n0.00,20,6\n0.01,20.3,6.1\n0.02,20.5,6.2\n", "\"0\",\"1\"\n20,6\n20.3,6.1\n20.5,6.2\n",
+        ",0,1,2\n0,0.00,1,2\n1,0.01,1,2\n2,0.02,1,2\n",
+        "0;1;2\n12:00:00.0;20;6\n12:00:00.5;21;7\n12:00:01.0;22;8\n",
+        "Report\n\n0 1 2\n7 20 6\n8 21 7\n9 22 8\n"}) {
+    const std::string said = refusal(text);
+    EXPECT_NE(said.find("this line has the numbers of the columns instead of their names"), std::string::npos)
+        << text << said;
+  }
+  for (const char* text :
+       {"0,1,2\n0.01,1.2,2.1\n0.02,1.3,2.3\n0.03,1.5,2.4\n", "0,1,2\n1,2,3\n2,3,4\n3,4,5\n",
+        "0,1,2\n0.01,20,2.1\n0.02,20,2.2\n0.03,20,2.3\n", "0,1\n0.01,20\n0.02,20\n0.03,20\n"})
+    EXPECT_EQ(table_of(text).columns[1].values.size(), 4U) << text;
+  EXPECT_EQ(table_of("t,p,x\n0,1,2\n0,20,6\n1,21,7\n2,22,8\n").columns[2].values.front(), 2);
+}
+
 TEST(TextTable, MissingValueWordsAreReadAsNan) {
   const ForeignTable table = table_of("t,x\n0,NaN\n1,\n2,N/A\n3,-999\n4,inf\n5,7\n", {0, {"-999"}, {}});
   for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(table.columns[1].values[i])) << i;
