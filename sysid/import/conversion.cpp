@@ -29,11 +29,12 @@ class Converter {
     remarks_.warnings = table_.warnings;
     ForeignSamples samples = samples_of_table();
     if (problems_.size() != before) return std::nullopt;
+    // Before --from-s removes samples: `--zero ROLE=first` means the first value of the whole column.
+    subtract_first(samples);
     if (const auto problem = order_in_time(mapping_, samples, remarks_, groups_in(samples))) {
       refuse_row(*problem);
       return std::nullopt;
     }
-    subtract_first(samples);
     check_any_value(samples);
     if (problems_.size() != before) return std::nullopt;
     complete_drive(samples, remarks_);

@@ -152,6 +152,17 @@ TEST(Convert, ZeroFirstSubtractsTheFirstValue) {
   EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9);
 }
 
+TEST(Convert, ZeroFirstIsTheFirstValueOfTheColumnWithACutAtTheStart) {
+  const std::string text =
+      text_of("t_s,set_kpa,tip_mm", [](int i, double p, double y) { return plain(i, p, y + 5); });
+  Mapping mapping = mapping_of("t_s", "set_kpa", "tip_mm");
+  mapping[Role::displacement].zero_first = true;
+  mapping.from_s = 0.5;
+  const Log log = log_of(text, mapping).log;
+  ASSERT_EQ(log.size(), 150U);
+  EXPECT_NEAR(log.displacement_mm[0], 6.5, 1e-9);
+}
+
 TEST(Convert, EpochTimesKeepDoublePrecision) {
   const std::string text = text_of("timestamp,set_kpa,tip_mm", [](int i, double p, double y) {
     return fixed(1717156800 + 0.01 * i, 3) + "," + shortest(p) + "," + shortest(y);
