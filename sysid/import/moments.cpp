@@ -266,6 +266,18 @@ std::optional<Moment> moment_of(std::string_view text) {
   return Moment{*day + *time - *offset, true, false, false};
 }
 
+std::optional<Nanoseconds> day_of(std::string_view text) {
+  constexpr Nanoseconds day = 86400 * ns_per_s;
+  auto moment = moment_of(text);
+  if (!moment) moment = moment_of(std::string(text) + " 00:00:00");
+  return moment && moment->dated && moment->time % day == 0 ? std::optional(moment->time) : std::nullopt;
+}
+
+std::string about_combined_times(const TableColumn& first, const TableColumn& second) {
+  return "'" + document::shown(first.name, 40) + "' and '" + document::shown(second.name, 40) +
+         "' are combined into one time";
+}
+
 void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::string>& notes) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto rest = rest_of_seconds(columns, i);
@@ -276,8 +288,7 @@ void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::str
       seconds.values[row] += nanoseconds.values[row] / ns_per_second;
     seconds.unit = "s";
     nanoseconds.is_part_of_time = true;
-    std::string note = "'" + document::shown(seconds.name, 40) + "' and '" +
-                       document::shown(nanoseconds.name, 40) + "' are combined into one time";
+    std::string note = about_combined_times(seconds, nanoseconds);
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
   }
 }

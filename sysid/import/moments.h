@@ -33,6 +33,13 @@ struct Moment {
 /// order of day and month is ambiguous.
 [[nodiscard]] std::optional<Moment> moment_of(std::string_view text);
 
+/// Parses a date without a time of day, in the formats of moment_of(), or a date with the time 00:00:00.
+/// Returns the start of this day, as time since 1970.
+[[nodiscard]] std::optional<Nanoseconds> day_of(std::string_view text);
+
+/// Returns the note that two columns are combined into one time.
+[[nodiscard]] std::string about_combined_times(const TableColumn& first, const TableColumn& second);
+
 /// Adds the nanoseconds of one column to the seconds of another column if the column names differ only in
 /// their last word: "stamp.sec" and "stamp.nanosec", or "secs" and "nsecs". Both columns must contain whole
 /// numbers, and the nanoseconds must be from 0 to below 1e9. The column of the nanoseconds is marked as part

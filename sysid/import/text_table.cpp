@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "sysid/import/cell_value.h"
+#include "sysid/import/date_column.h"
 #include "sysid/import/decimal_commas.h"
 #include "sysid/import/fingers.h"
+#include "sysid/import/moments.h"
 #include "sysid/import/text_dialect.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/csv_text.h"
@@ -52,6 +54,7 @@ class RowReader {
       if (!dialect.units.empty()) table_.columns[i].unit = dialect.units[i];
       const bool as_in_a_log = lower_case(table_.columns[i].name) == channel_column;
       const bool is_first = channel_ == dialect.width && names_channel(table_.columns[i].name);
+      if (DateColumn::has_name(table_.columns[i].name)) date_column_ = i;
       if (is_first || (as_in_a_log && !is_log_channel_)) channel_ = i;
       is_log_channel_ = is_log_channel_ || as_in_a_log;
     }
@@ -70,6 +73,8 @@ class RowReader {
       table_.warnings.push_back("line " + std::to_string(line.number) + ": " +
                                 cut_off_sentence(cells_.back().text));
     if (!belongs()) return table_.account.leave_out(LeftOut::other_channel);
+    if (table_.line.empty()) find_time_of_day();
+    if (date_column_ < dialect_.width) read_date();
     for (std::size_t i = 0; i < dialect_.width; ++i) read_cell(i, line);
     table_.line.push_back(line.number);
     table_.position.push_back(position_++);
@@ -78,6 +83,11 @@ class RowReader {
   void finish() {
     for (std::size_t i = 0; i < dialect_.width; ++i)
       table_.columns[i].ambiguous_comma = commas_[i].ambiguous_cell(table_.columns[i].values);
+    if (date_column_ < dialect_.width && date_.is_readable() && table_.columns[date_column_].bad_count == 0) {
+      table_.columns[date_column_].is_part_of_time = true;
+      table_.notes.push_back(
+          about_combined_times(table_.columns[date_column_], table_.columns[time_of_day_]));
+    }
     if (skipped_.empty()) return;
     std::string lines;
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
@@ -179,8 +189,39 @@ class RowReader {
     return options_.channel.empty() || channel == options_.channel;
   }
 
+  /// Finds the column of times of day that the column of dates completes. If there is none, the column of
+  /// dates is a column like all others. The first row decides.
+  void find_time_of_day() {
+    if (date_column_ == dialect_.width) return;
+    const CellValue date = cell_value(cells_[date_column_].text, options_.missing);
+    const bool has_time =
+        date.kind == CellKind::moment && !day_of(trimmed(unquoted(cells_[date_column_].text)));
+    for (time_of_day_ = 0; time_of_day_ < dialect_.width; ++time_of_day_) {
+      const CellValue cell = cell_value(cells_[time_of_day_].text, options_.missing);
+      if (cell.kind == CellKind::moment && !cell.dated && !cell.short_clock) break;
+    }
+    if (has_time || time_of_day_ == dialect_.width) date_column_ = dialect_.width;
+  }
+
+  void read_date() {
+    const std::string_view cell = cells_[date_column_].text;
+    const bool missing = cell_value(cell, options_.missing).kind == CellKind::missing;
+    date_.read(missing ? std::string_view() : trimmed(unquoted(cell)));
+  }
+
+  /// Refuses a change of the date that is not at midnight if the new date cannot be read.
+  void check_date(const TextLine& line, bool is_midnight) {
+    if (!date_.take_unread_change() || is_midnight) return;
+    report_.add(
+        "date", {line.number, 1}, line.text,
+        "the date changes to '" + document::shown(date_.text(), 40) +
+            "', and the number of days is unknown, because this date or the date before it cannot be read",
+        "export the dates in a form such as 2024-05-31");
+  }
+
   void read_cell(std::size_t i, const TextLine& line) {
     TableColumn& column = table_.columns[i];
+    if (i == date_column_ && date_.is_readable()) return column.values.push_back(missing_value);
     const CellValue cell = cell_value(cells_[i].text, options_.missing);
     commas_[i].add(cell, cells_[i].text);
     if (cell.with_comma && comma_.number == 0) comma_ = line;
@@ -193,7 +234,9 @@ class RowReader {
         if (column.moments == 0) column.first_moment = cell.moment;
         column.short_clocks += cell.short_clock ? 1 : 0;
         column.surely_minutes = column.surely_minutes || cell.surely_minutes;
-        column.values.push_back(moments_[i].seconds_after_first(cell, column.moments++ == 0));
+        column.values.push_back(
+            moments_[i].seconds_after_first(cell, column.moments++ == 0, date_.since_first()));
+        if (i == time_of_day_) check_date(line, moments_[i].is_new_round);
         return;
       case CellKind::text:
         if (options_.skip_bad_lines) column.bad_rows.push_back(column.values.size());
@@ -212,17 +255,24 @@ class RowReader {
 
   /// Computes times relative to the first timestamp of a column. The times are whole nanoseconds, because
   /// seconds since 1970 in a double would lose digits. If a time of day decreases by more than half a day,
-  /// midnight has passed. If minutes and seconds decrease by more than half an hour, the next hour has begun.
+  /// midnight has passed, unless a date states the day. If minutes and seconds decrease by more than half an
+  /// hour, the next hour has begun.
   struct Clock {
     Nanoseconds first = 0;
     Nanoseconds last = 0;
     Nanoseconds rounds = 0;
+    Nanoseconds days = 0;       ///< time between the first date and the date of the last timestamp
+    bool is_new_round = false;  ///< true: midnight or the end of an hour is before the last timestamp
 
-    double seconds_after_first(const CellValue& cell, bool is_first) {
+    /// @param days_now  time between the first date and the date of the row.
+    double seconds_after_first(const CellValue& cell, bool is_first, Nanoseconds days_now) {
       constexpr Nanoseconds day = 86400 * ns_per_s;
       if (is_first) first = last = cell.moment;
+      if (is_first || cell.dated || cell.short_clock) days = days_now;
       const Nanoseconds round = cell.short_clock ? 3600 * ns_per_s : day;
-      if (!cell.dated && last - cell.moment > round / 2) rounds += round;
+      is_new_round = !cell.dated && days == days_now && last - cell.moment > round / 2;
+      rounds += is_new_round ? round : days_now - days;
+      days = days_now;
       last = cell.moment;
       return seconds(cell.moment - first + rounds);
     }
@@ -240,6 +290,9 @@ class RowReader {
   std::size_t channel_ = dialect_.width;
   /// True: the column that identifies the finger has the same name as in a log.
   bool is_log_channel_ = false;
+  DateColumn date_;
+  std::size_t date_column_ = dialect_.width;  ///< column of dates; dialect_.width: there is no such column
+  std::size_t time_of_day_ = dialect_.width;  ///< column of times of day that the dates complete
   CutOffDetector cut_off_;
   TextLine comma_;
   TextLine point_;

@@ -68,5 +68,14 @@ TEST(Moments, AmbiguousOrInvalidTextsAreRejected) {
     EXPECT_FALSE(moment_of(text)) << text;
 }
 
+TEST(Moments, DaysHaveNoTimeOfDay) {
+  EXPECT_EQ(day_of("1970-01-03"), 2 * 86400 * ns_per_s);
+  for (const char* same :
+       {"31.05.2024", "2024/05/31", "31-May-2024", "May 31, 2024", "2024-05-31T00:00:00.000000"})
+    EXPECT_EQ(day_of(same), day_of("2024-05-31")) << same;
+  for (const char* none : {"05/31/2024", "2024-05-31 12:00:00", "00:00:00", "20240531", ""})
+    EXPECT_FALSE(day_of(none)) << none;
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::moments_test

@@ -106,6 +106,48 @@ TEST(TextTable, TimeOfDayContinuesPastMidnight) {
   EXPECT_EQ(table.columns[0].moments, 3U);
 }
 
+/// Returns the table of the columns Date, Time and x. Each row is a date and a time, with a comma between
+/// them.
+std::string dated(const std::vector<std::string>& rows) {
+  std::string text = "Date,Time,x\n";
+  for (const std::string& row : rows) text += row + ",1\n";
+  return text;
+}
+
+TEST(TextTable, DateAndTimeOfDayAreCombined) {
+  for (const auto& [first, second] :
+       {std::pair("2024-05-31", "2024-06-01"), std::pair("31.05.2024", "01.06.2024"),
+        std::pair("31-May-2024", "1-Jun-2024"),
+        std::pair("2024-05-31T00:00:00.000000", "2024-06-01T00:00:00.000000")}) {
+    const std::string a = std::string(first) + ",";
+    const std::string b = std::string(second) + ",";
+    const ForeignTable table = table_of(
+        dated({a + "23:00:00", a + "23:59:59", b + "00:00:01", ",00:00:02", b + "", b + "23:30:00.5"}));
+    EXPECT_EQ(table.columns[1].values[2], 3601) << first;
+    EXPECT_EQ(table.columns[1].values[3], 3602) << first;
+    EXPECT_EQ(table.columns[1].values[5], 86400 + 1800.5) << first << ": no midnight between two equal dates";
+    EXPECT_TRUE(table.columns[0].is_part_of_time);
+    EXPECT_EQ(table.columns[0].bad_count, 0U);
+    EXPECT_EQ(table.columns[0].moments, 0U);
+    EXPECT_EQ(table.notes, std::vector<std::string>{"'Date' and 'Time' are combined into one time"});
+    EXPECT_EQ(table_of(dated({a + "10:00:00", b + "10:00:01"})).columns[1].values[1], 86401) << first;
+  }
+  EXPECT_EQ(table_of(dated({"2024-05-31,23:59:59", "2024-05-31,00:00:01"})).columns[1].values[1], 2)
+      << "the date of the start in each row";
+  EXPECT_EQ(table_of("Date,x\n2024-05-31 00:00:00,1\n2024-05-31 00:00:01,2\n").columns[0].values[1], 1)
+      << "no time of day in another column";
+}
+
+TEST(TextTable, ChangeOfAnUnreadableDateIsRefusedExceptAtMidnight) {
+  EXPECT_NE(
+      refusal(dated({"05/31/2024,10:00:00", "06/01/2024,10:00:01"})).find("t.csv:3:1: the date changes"),
+      std::string::npos);
+  const ForeignTable table = table_of(dated({"05/31/2024,23:59:59", "06/01/2024,00:00:01"}));
+  EXPECT_EQ(table.columns[1].values[1], 2);
+  EXPECT_EQ(table.columns[0].bad_count, 2U);
+  EXPECT_FALSE(table.columns[0].is_part_of_time);
+}
+
 TEST(TextTable, OnlyTheLastLineMayBeTruncated) {
   EXPECT_EQ(table_of("t,x\n0,1\n1,2\n2").warnings,
             std::vector<std::string>{"line 4: the last line is cut off and left out"});
