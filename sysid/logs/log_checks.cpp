@@ -149,8 +149,11 @@ class Check {
       }
     }
     if (gaps > 0) {
-      note(longest, std::to_string(gaps) + " gaps in the sampling; the longest gap lasts " +
-                        significant(longest_s) + " s; the command is assumed to be linear during these gaps");
+      note(longest, gaps == 1 ? "1 gap in the sampling lasts " + significant(longest_s) +
+                                    " s; the command is assumed to be linear during this gap"
+                              : std::to_string(gaps) + " gaps in the sampling; the longest gap lasts " +
+                                    significant(longest_s) +
+                                    " s; the command is assumed to be linear during these gaps");
     }
     if (sampling_.jitter_s > 0.01 * sampling_.median_interval_s) {
       note(log_.size(), "irregular sampling: " + significant(1e3 * sampling_.median_interval_s) + " ms ± " +

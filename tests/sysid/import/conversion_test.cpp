@@ -163,6 +163,25 @@ TEST(Convert, ZeroFirstIsTheFirstValueOfTheColumnWithACutAtTheStart) {
   EXPECT_NEAR(log.displacement_mm[0], 6.5, 1e-9);
 }
 
+TEST(Convert, GapsOfTheSamplingAreCounted) {
+  for (const int gaps : {1, 2}) {
+    const std::string text = text_of("t_s,set_kpa,tip_mm", [&](int i, double, double y) {
+      const double late_s = i < 60 ? 0 : i < 120 || gaps == 1 ? 1 : 2;
+      return shortest(0.01 * i + late_s) + "," + shortest((i + 15) / 30) + "," + shortest(y);
+    });
+    std::vector<std::string> notes;
+    for (const LogNote& note : log_of(text, mapping_of("t_s", "set_kpa", "tip_mm")).log.notes)
+      notes.push_back(note.text);
+    const std::string expected =
+        gaps == 1
+            ? "1 gap in the sampling lasts 1.01 s; the command is assumed to be linear during this gap"
+            : "2 gaps in the sampling; the longest gap lasts 1.01 s; the command is assumed to be linear "
+              "during these gaps";
+    EXPECT_EQ(std::ranges::count(notes, expected), 1)
+        << with_commas(notes, [](const std::string& note) { return note; });
+  }
+}
+
 TEST(Convert, EpochTimesKeepDoublePrecision) {
   const std::string text = text_of("timestamp,set_kpa,tip_mm", [](int i, double p, double y) {
     return fixed(1717156800 + 0.01 * i, 3) + "," + shortest(p) + "," + shortest(y);
