@@ -57,7 +57,7 @@ namespace softgrip::sysid {
 [[nodiscard]] std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string_view bytes,
                                                           document::Problems& problems);
 
-/// Reads UTF-8 or Latin-1, with or without a byte order mark, or UTF-16 with a byte order mark. Skips
+/// Reads UTF-8, Latin-1 or UTF-16, with or without a byte order mark (utf8_of() in text_dialect.h). Skips
 /// comments, empty lines and the lines above the names. Recognises a row of units. Accepts decimal points or
 /// decimal commas, but refuses a file that contains both. If the last line has too few cells, it is left out
 /// and counted. It is a problem if another row has a wrong number of cells, unless `options.skip_bad_lines`

@@ -66,8 +66,9 @@ struct Dialect {
                                                 const TableOptions& options, document::Problems& problems);
 
 /// Converts a text to UTF-8 without a byte order mark. The line breaks of the result are "\n" or "\r\n".
-/// Accepted encodings are UTF-8, UTF-16 with a byte order mark, and Latin-1. If the bytes are not a text,
-/// returns a sentence that describes the error.
+/// Accepted encodings are UTF-8, UTF-16 and Latin-1. Without a byte order mark, UTF-16 is accepted only if
+/// most of the first 32 characters are in Latin-1. If the bytes are not a text, returns a sentence that
+/// describes the error.
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {

@@ -1,8 +1,10 @@
 #include "sysid/import/text_dialect.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "sysid/import/table.h"
@@ -36,7 +38,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
     const auto second = static_cast<std::uint8_t>(bytes[i + 1]);
     return static_cast<std::uint32_t>(big_endian ? first << 8 | second : second << 8 | first);
   };
-  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
     std::uint32_t code = unit(i);
     if (code >= 0xd800 && code < 0xdc00 && i + 3 < bytes.size()) {
       code = 0x10000 + ((code - 0xd800) << 10) + ((unit(i + 2) - 0xdc00) & 0x3ff);
@@ -74,10 +76,26 @@ void normalise_line_ends(std::string& text) {
   for (char& c : text) c = c == '\r' ? '\n' : c;
 }
 
+/// Byte order of a text in UTF-16.
+enum class ByteOrder : std::uint8_t { little_endian, big_endian };
+
+/// Returns the byte order of a text in UTF-16; nullopt for another text. Without a byte order mark, the bytes
+/// are UTF-16 if the high bytes of most of the first 32 characters are 0 and no low byte is 0.
+std::optional<ByteOrder> utf16_order(std::string_view bytes) {
+  if (bytes.starts_with("\xff\xfe")) return ByteOrder::little_endian;
+  if (bytes.starts_with("\xfe\xff")) return ByteOrder::big_endian;
+  constexpr std::size_t beginning = 64;
+  if (bytes.size() < beginning) return std::nullopt;
+  std::array<std::size_t, 2> zeros{};
+  for (std::size_t i = 0; i < beginning; ++i) zeros.at(i % 2) += bytes[i] == '\0' ? 1U : 0U;
+  if (4 * (zeros[0] + zeros[1]) < 3 * (beginning / 2) || zeros[0] * zeros[1] != 0) return std::nullopt;
+  return zeros[1] > 0 ? ByteOrder::little_endian : ByteOrder::big_endian;
+}
+
 /// Returns the number of NUL bytes at the end of a text. Returns 0 for UTF-16, whose characters contain NUL
 /// bytes.
 std::size_t nul_tail(std::string_view bytes) {
-  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) return 0;
+  if (utf16_order(bytes)) return 0;
   const std::size_t last = bytes.find_last_not_of('\0');
   return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
 }
@@ -98,8 +116,9 @@ std::optional<std::size_t> number_of_long_line(std::string_view text) {
 
 tl::expected<std::string, std::string> utf8_of(std::string_view bytes) {
   std::string text;
-  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
-    text = from_utf16(bytes, bytes.front() == '\xfe');
+  if (const auto order = utf16_order(bytes)) {
+    const bool has_mark = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+    text = from_utf16(bytes.substr(has_mark ? 2 : 0), *order == ByteOrder::big_endian);
   } else if (bytes.find('\0') != std::string_view::npos) {
     return tl::unexpected(std::string("this file is not a text file, and its format is not known"));
   } else if (is_utf8(bytes)) {

@@ -233,6 +233,27 @@ TEST(TextEncoding, EncodingsAreConvertedToUtf8) {
   EXPECT_EQ(utf8_of("1\r2\r"), "1\n2\n");
 }
 
+TEST(TextEncoding, Utf16WithoutAByteOrderMarkIsRecognised) {
+  const std::string text = "time_s,pressure_kpa,tip_\xb5m\n0,1,2\n0.01,2,3\n";
+  std::string little;
+  std::string big;
+  for (const char c : text) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  for (const std::string& bytes : {little, big}) {
+    const ForeignTable table = table_of(bytes);
+    ASSERT_EQ(table.columns.size(), 3U);
+    EXPECT_EQ(table.columns[2].name, "tip_\xc2\xb5m");
+    EXPECT_EQ(table.columns[2].values, (std::vector<double>{2, 3}));
+    EXPECT_TRUE(table.notes.empty());
+  }
+  little.replace(0, 2, "\xa9\x03");
+  EXPECT_EQ(table_of(little).columns[0].name, "\xce\xa9ime_s");
+  EXPECT_FALSE(utf8_of(std::string(80, '\0')));
+  EXPECT_FALSE(utf8_of(little.substr(0, 40) + std::string(60, 'x')));
+}
+
 TEST(TextTable, TooManyLinesAreRefusedBeforeSplitting) {
   std::string text = "time_s,tip\n";
   text.reserve(text.size() + 4 * (most_rows + 1));
