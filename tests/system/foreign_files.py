@@ -276,6 +276,43 @@ class File:
         return path
 
 
+def ambiguous_tables():
+    """Returns texts that have two possible meanings, and texts with rows or dates outside the cells of the readings."""
+    names = ["time_s", "set_kpa", "tip_mm"]
+    rows = PLAIN.splitlines()
+    swapped = table(["time_s", "tip_mm", "set_kpa"], [T[150:], TIP[150:], COMMAND[150:]])
+    without_time = table(names[1:], [COMMAND, TIP]).splitlines()
+    return [
+        File("two_units.csv", "two commands in psi and in kPa, whose mean is used",
+             table(["time_s", "p1 (psi)", "p2 (kPa)", "tip_mm"], [T, scaled(COMMAND, PSI), COMMAND, TIP]),
+             "--command 'p1 (psi)' --command 'p2 (kPa)'"),
+        File("two_tables.csv", "two tables, one after the other, with another order of the columns",
+             "\n".join(rows[:151]) + "\n" + swapped, "--skip-bad-lines",
+             refused="two_tables.csv:152:1: a second table begins here"),
+        File("rows_in_comments.csv", "ten rows in comments and two empty lines, with the rate as an option",
+             "\n".join("#" + row if 201 <= i < 211 else "" if i in (251, 252) else row for i, row in enumerate(without_time)),
+             "--rate-hz 100", columns={key: without({*range(200, 210), 250, 251})[key] for key in BASIC},
+             left_out={"comment": 10, "empty": 2}),
+        File("thousands.csv", "thousands separated by commas, in quotes",
+             table(["time", "set_pa", "tip_um"], [times("2024-05-31T12:00:00", "%H:%M:%S.%f"),
+                   [f"{1000 * p:,.0f}" for p in COMMAND], [f"{1000 * tip:,.0f}" for tip in TIP]], quote=True),
+             refused="can be a decimal comma or separate thousands"),
+        File("column_numbers.csv", "the numbers of the columns instead of their names", table(["0", "1", "2"], [T, COMMAND, TIP]),
+             "--time 1 --unit time=s --command 2 --unit command=kPa --displacement 3 --unit displacement=mm",
+             refused="column_numbers.csv:1:1: this line has the numbers of the columns instead of their names"),
+        File("date_and_time.csv", "dates and times of day in two columns, across midnight", table(
+            ["Date", "Time", *names[1:]], [[text[:10] for text in times("2024-05-31T23:59:58", "%d.%m.%Y.%f")],
+                                           times("2024-05-31T23:59:58", "%H:%M:%S.%f"), COMMAND, TIP]),
+             says="'Date' and 'Time' are combined into one time"),
+        File("date_changes.csv", "dates with the month first that change within the file", table(
+            ["Date", "Time", *names[1:]], [[f"0{5 if t < 1.5 else 6}/01/2024" for t in T],
+                                           times("2024-05-31T12:00:00", "%H:%M:%S.%f"), COMMAND, TIP]),
+             refused="date_changes.csv:152:1: the date changes to '06/01/2024'"),
+        File("utf16_no_mark.txt", "UTF-16 without a byte order mark",
+             table(names, [T, COMMAND, TIP], "\t", end="\r\n").encode("utf-16-le")),
+    ]
+
+
 def spreadsheets():
     """Returns workbooks, and files that look like workbooks but are not."""
     names = ["Time (s)", "P set (kPa)", "Tip (mm)"]
@@ -498,7 +535,7 @@ def reports():
              "\n".join(line.rsplit(",", 1)[0] if i in (40, 41, 200) else line for i, line in enumerate(PLAIN.split("\n"))),
              "--skip-bad-lines", columns={key: without({39, 40, 199})[key] for key in BASIC}, left_out={"bad_line": 3},
              says="leaves out 3 lines with too few or too many cells, in lines 41, 42, 201"),
-        *other_fingers_and_clocks(),
+        *ambiguous_tables(), *other_fingers_and_clocks(),
         File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
              "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
              says="--separator has no effect: the file is not a text"),
