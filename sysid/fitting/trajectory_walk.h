@@ -30,6 +30,17 @@ inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double ar
                                : std::clamp(from_kpa, first_kpa, std::max(last_turn_kpa, first_kpa));
 }
 
+/// Returns time, temperature and supply pressure at sample `i`. If a column is missing, the default value is
+/// returned.
+inline model::Surroundings surroundings_at(const Record& record, std::size_t i) {
+  model::Surroundings around;
+  around.time_s = record.campaign_time_s + record.time_s[i];
+  around.oscillation_shift_s = record.oscillation_shift_s;
+  if (!record.temperature_c.empty()) around.temperature_c = record.temperature_c[i];
+  if (!record.supply_kpa.empty()) around.supply_kpa = record.supply_kpa[i];
+  return around;
+}
+
 /// Brings a chain to the state at the start of a record, with the reversals in its StartState. If there are a
 /// peak and a valley, the chain begins at rest at the peak and passes `cycles_before` cycles, which end at
 /// the valley. If there is only one of them, the chain begins at rest there. Then the chain moves to the
@@ -48,9 +59,11 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
   chain.reset(T(record.largest_before_kpa));
   chain.rest(peaked ? peak_before_kpa : T(turned ? valley_kpa : first_kpa));
   if (!peaked && !turned) return;
+  // Blocks that depend on the time (drift, ageing) keep their values at the first sample.
+  const model::Surroundings around = surroundings_at(record, 0);
   const auto settle_at = [&](double pressure_kpa) {
-    chain.step(T(0.0), T(pressure_kpa));
-    chain.step(T(valve_settling_s), T(pressure_kpa));
+    chain.step(T(0.0), T(pressure_kpa), around);
+    chain.step(T(valve_settling_s), T(pressure_kpa), around);
   };
   if (peaked && turned) {
     for (int cycle = 1; cycle < cycles_before; ++cycle) {
@@ -62,8 +75,9 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
   const double last_turn_kpa = turned ? valley_kpa : model::value_of(peak_before_kpa);
   const double from_kpa = arrived_from_kpa(first_kpa, last_turn_kpa, state.arrival_kpa_per_s);
   settle_at(from_kpa);
-  chain.step(T(creep_settling_s), T(from_kpa));
-  if (from_kpa != first_kpa) chain.step(T((first_kpa - from_kpa) / state.arrival_kpa_per_s), T(first_kpa));
+  chain.step(T(creep_settling_s), T(from_kpa), around);
+  if (from_kpa != first_kpa)
+    chain.step(T((first_kpa - from_kpa) / state.arrival_kpa_per_s), T(first_kpa), around);
 }
 
 /// Brings a chain to the state at the start of a record whose StartState contains neither a valley nor an
@@ -71,17 +85,6 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
   start(chain, record, record.start_unknown ? peak_before_kpa : T(record.drive_kpa.front()), StartState{});
-}
-
-/// Returns time, temperature and supply pressure at sample `i`. If a column is missing, the default value is
-/// returned.
-inline model::Surroundings surroundings_at(const Record& record, std::size_t i) {
-  model::Surroundings around;
-  around.time_s = record.campaign_time_s + record.time_s[i];
-  around.oscillation_shift_s = record.oscillation_shift_s;
-  if (!record.temperature_c.empty()) around.temperature_c = record.temperature_c[i];
-  if (!record.supply_kpa.empty()) around.supply_kpa = record.supply_kpa[i];
-  return around;
 }
 
 /// Returns the drive at the end of the step to sample `i` >= 1 [kPa].

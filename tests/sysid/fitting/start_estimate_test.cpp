@@ -15,6 +15,7 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/sensor_drift.h"
 #include "model/blocks/transport_delay.h"
 #include "model/catalogue.h"
 #include "model/named.h"
@@ -235,6 +236,19 @@ TEST(EstimatedStart, RecordWithoutReadingsStartsAtRest) {
   const StartState start = estimated_start(finger, record);
   EXPECT_TRUE(is_at_rest(start, record));
   EXPECT_EQ(start.offset_mm, 0);
+}
+
+/// A log that begins under pressure is simulated from an earlier time. The drift of the sensor must not be
+/// simulated for this time.
+TEST(StartEstimate, ADriftHasItsValueAtTheFirstSample) {
+  const model::Model finger = loaded("bench_twin");
+  const model::Model drifting =
+      model::with_block(finger, model::block_of<model::SensorDrift>({{"rate_mm_per_h", 60}}));
+  const Record record = cut(finger, SignalName::tp1, 900, {.start = Start::unknown});
+  const StartState start = estimated_start(finger, record);
+  const std::vector<double> still = predict(finger, record, start), moving = predict(drifting, record, start);
+  for (std::size_t i = 0; i < record.size(); i += 100)
+    EXPECT_NEAR(moving[i] - still[i], record.time_s[i] / 60, 1e-3) << i;
 }
 
 /// Returns a log of the finger with an oscillation of 0.3 mm and 1.7 Hz, and with the harmonic of 3.4 Hz.
