@@ -114,6 +114,12 @@ class Judge {
       say("search for changes in the later logs");
       std::vector<ScoredEffect> ranked =
           ranked_effects(readings, effects, found, tolerance, options_.threads);
+      // Each cause is named once. A second form of a named cause would only repeat its name.
+      std::erase_if(ranked, [&](const ScoredEffect& each) {
+        return std::any_of(found.begin(), found.end(), [&](const FittedEffect& named) {
+          return named.effect.id == each.fit.fitted.effect.id;
+        });
+      });
       if (step == 0) {
         for (const ScoredEffect& each : ranked)
           judged.tried.push_back({each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain,
@@ -141,6 +147,10 @@ class Judge {
       diagnosis.warnings.push_back(unusual_gain(
           judged.gain_percent,
           std::abs(judged.gain_percent) > 100 * (1 - limits::negligible_share) * base_.free_gain));
+    if (base_.judged == Judged::displacement && found.empty() && base_.units.are_runs() &&
+        is_another_zero(base_.zero_mm + judged.zero_mm))
+      diagnosis.warnings.push_back(
+          unusual_zero(judged.zero_mm, base_.zero_spread_mm, model::name_of(later.front().output_unit)));
     if (!judged.unusual_log.empty()) diagnosis.warnings.push_back(unusual_log(judged.unusual_log));
     diagnosis.readings.push_back(std::move(judged));
   }

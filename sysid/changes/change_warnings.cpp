@@ -39,4 +39,12 @@ std::string unusual_gain(double percent, bool is_limited) {
          "this difference is not significant. Record more healthy logs";
 }
 
+std::string unusual_zero(double zero_mm, double spread_mm, std::string_view unit) {
+  return "The zero in the later logs is " + significant(std::abs(zero_mm), 3) + " " + std::string(unit) +
+         (zero_mm < 0 ? " lower" : " higher") + " than in the healthy logs, where it varies by " +
+         significant(spread_mm, 2) + " " + std::string(unit) +
+         " (standard deviation). A different zero alone is not reported as a change, because a moved sensor "
+         "and a constant load have this effect. Check the sensor and the load";
+}
+
 }  // namespace softgrip::sysid

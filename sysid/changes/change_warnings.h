@@ -2,6 +2,7 @@
 // Sentences of the warnings that a diagnosis of a change gives about the later logs.
 
 #include <string>
+#include <string_view>
 
 namespace softgrip::sysid {
 
@@ -20,5 +21,10 @@ namespace softgrip::sysid {
 /// @param percent  difference of the gain in the later logs from the healthy gain [%]; it is not significant.
 /// @param is_limited  true: the difference is the largest one that the fit permits.
 [[nodiscard]] std::string unusual_gain(double percent, bool is_limited);
+
+/// @param zero_mm  zero offset in the later logs minus the mean zero offset in the healthy logs.
+/// @param spread_mm  standard deviation of the zero offset between healthy runs.
+/// @param unit  unit of both.
+[[nodiscard]] std::string unusual_zero(double zero_mm, double spread_mm, std::string_view unit);
 
 }  // namespace softgrip::sysid

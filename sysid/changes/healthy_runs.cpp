@@ -144,7 +144,8 @@ Disagreement added_disagreement(const Base& base, const std::vector<Record>& lat
     const std::vector<std::vector<double>> differing =
         minus(own, residuals_of(with_model(base, other), later));
     const Disagreement now = disagreement(readings_of(base, later, differing));
-    if (!std::isfinite(now.mean_square) || !std::isfinite(now.loss)) continue;  // the alternative diverges
+    const bool diverges = !std::isfinite(now.loss) || !(now.mean_square < square(base.span_mm));
+    if (diverges) continue;
     most.mean_square = std::max(most.mean_square, now.mean_square - healthy.mean_square);
     most.loss = std::max(most.loss, now.loss - healthy.loss);
   }

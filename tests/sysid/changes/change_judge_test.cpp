@@ -212,6 +212,15 @@ TEST_F(ChangeJudge, ADisagreementAboutHealthyLogsIsSubtracted) {
   EXPECT_GT(added_disagreement(base_, ramps).loss, 0);
 }
 
+/// A prediction that is farther from the other one than the span of the readings is no evidence.
+TEST_F(ChangeJudge, AnAlternativeThatDivergesIsIgnored) {
+  Base other = base_;
+  other.filter_weights *= 1000;
+  base_.alternatives = {other};
+  const std::vector<Record> ramps = pressure_records(test::logs_of({}, 5, true), false);
+  EXPECT_EQ(added_disagreement(base_, ramps).loss, 0);
+}
+
 /// A weight changes the zero offset of a linear finger and nothing else. The response of this finger
 /// decreases with the displacement, so a weight also changes the shape of its readings.
 TEST(Weight, OnANonlinearFingerIsNamedWithItsPressure) {
@@ -227,6 +236,22 @@ TEST(Weight, OnANonlinearFingerIsNamedWithItsPressure) {
   EXPECT_EQ(std::count(alternatives.begin(), alternatives.end(), "payload"), 0);
   EXPECT_EQ(diagnosis.causes.front().size.unit, "kPa");
   EXPECT_NEAR(diagnosis.causes.front().size.value, 8, 1.5);
+}
+
+TEST(UnusualZero, IsStatedIfNoHealthyRunHasSuchAZero) {
+  const Base base =
+      fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
+  ASSERT_TRUE(base.units.are_runs());
+  const auto warnings = [&](double zero_mm) {
+    ChangeDiagnosis diagnosis;
+    judge_change(base, false, make_records(test::logs_of({.zero_mm = zero_mm}, 5), {}), {}, diagnosis);
+    EXPECT_TRUE(diagnosis.causes.empty());
+    return static_cast<int>(std::count_if(
+        diagnosis.warnings.begin(), diagnosis.warnings.end(),
+        [](const std::string& text) { return text.find("zero in the later logs") != std::string::npos; }));
+  };
+  EXPECT_EQ(warnings(-3), 1);
+  EXPECT_EQ(warnings(0), 0);
 }
 
 TEST(UnusualGain, IsStatedIfTheSpreadOfTheHealthyLogsContainsIt) {

@@ -20,5 +20,10 @@ TEST(ChangeWarnings, UnusualGainStatesTheDirectionAndTheLimit) {
       << unusual_gain(8, true);
 }
 
+TEST(ChangeWarnings, UnusualZeroStatesTheDirectionAndTheUnit) {
+  EXPECT_TRUE(unusual_zero(-4.5, 0.1, "deg").starts_with("The zero in the later logs is 4.5 deg lower than"))
+      << unusual_zero(-4.5, 0.1, "deg");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::change_warnings_test
