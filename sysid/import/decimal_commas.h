@@ -17,10 +17,9 @@ class DecimalCommas {
   void add(const CellValue& cell, std::string_view text);
 
   /// Returns the first cell such as "20,000", whose comma can be a decimal comma or separate thousands.
-  /// Returns
-  /// "" if the commas have a clear meaning: a comma cannot separate thousands ("20,5"), or all numbers have
-  /// one comma. Numbers without a comma are ignored if all of them are the same code for a missing value,
-  /// such as 999 (sensor_codes.h).
+  /// Returns "" if the commas have a clear meaning: a comma cannot separate thousands ("20,5"), or all
+  /// numbers have one comma. Numbers without a comma are ignored if all of them are the same code for a
+  /// missing value, such as 999 (sensor_codes.h).
   /// @param values  values of the column.
   [[nodiscard]] std::string ambiguous_cell(std::span<const double> values) const;
 
