@@ -11,6 +11,7 @@ nothing else at the same time.
 import json
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 import sys
@@ -63,6 +64,20 @@ class Logs:
     def made(self, model, length_s, rate_hz, seed):
         return self.answer(model, *command(length_s, rate_hz, seed), seed)
 
+    def slowed(self, path, factor, walk_mm=0.0):
+        """Multiplies the times of a log by a factor, and adds a random walk to its readings. `walk_mm` is the standard
+        deviation of the walk after 100 samples."""
+        log = np.genfromtxt(path, delimiter=",", names=True)
+        walk = np.cumsum(np.random.default_rng(9).standard_normal(len(log))) * walk_mm / 10
+        return self.write(",".join(log.dtype.names), factor * log["time_s"], log["pressure_command_kpa"], log["displacement_mm"] + walk)
+
+    def slowed_model(self, model, factor):
+        """Multiplies the time constants of the creep of a model by a factor."""
+        path = self.folder / f"slow_{model.name}"
+        path.write_text(re.sub(r"(c\d_kpa_s_per_mm: )([\d.]+)", lambda found: f"{found[1]}{factor * float(found[2]):.6g}",
+                               model.read_text()))
+        return path
+
     def measured(self, model, length_s, rate_hz, seed):
         """Changes the model so that its input is a measured pressure. This pressure follows the command with a lag of
         0.1 s and has noise of 0.05 kPa."""
@@ -91,6 +106,10 @@ def cases(logs):
         "model lacks delay and lag, log of 400 s at 100 Hz": lambda: diagnose(GIVEN, [logs.made(TWIN, 400, 100, 1)]),
         "model lacks delay and lag, log of 40 s at 1 kHz": lambda: diagnose(GIVEN, [logs.made(TWIN, 40, 1000, 7)]),
         "finger with a different model structure, log of 400 s at 100 Hz": lambda: diagnose(GIVEN, [logs.made(PLAY, 400, 100, 1)]),
+        "model lacks delay and lag, log of 400,000 s with one sample per 10 s": lambda: diagnose(
+            logs.slowed_model(GIVEN, 1000), [logs.slowed(logs.made(TWIN, 400, 100, 1), 1000)]),
+        "the same, with a random walk of the readings": lambda: diagnose(
+            logs.slowed_model(GIVEN, 1000), [logs.slowed(logs.made(TWIN, 400, 100, 1), 1000, walk_mm=0.15)]),
         "model lacks delay and lag, 4 logs with a measured pressure, 100 s at 100 Hz each": lambda: diagnose(
             GIVEN, [logs.measured(TWIN, 100, 100, seed) for seed in (2, 3, 4, 5)]),
         "3 healthy logs and 1 log of the unchanged finger, 100 s at 100 Hz each": lambda: diagnose(
