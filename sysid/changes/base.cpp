@@ -23,13 +23,12 @@ namespace {
 
 /// Order of the autoregression of the residual [bins]. The residual of a displacement has a longer
 /// correlation time than the residual of a pressure. For a displacement, the autoregression therefore covers
-/// at least finger_memory_s [s].
+/// at least finger_memory_in_units, in units of time_unit_s().
 constexpr std::size_t whitening_order = 8;
-constexpr double finger_memory_s = 0.4;
+constexpr double finger_memory_in_units = 0.4;
 /// Sampling intervals of the search for changes, in units of time_unit_s(), if the bins have the length
-/// shortest_bin_in_units().
-/// Oscillations and lags of a finger that are faster need no samples, because the form of a cause describes
-/// them. A valve responds faster than a finger.
+/// shortest_bin_in_units(). Oscillations and lags of a finger that are faster need no samples, because the
+/// form of a cause describes them. A valve responds faster than a finger.
 constexpr double finger_samples_in_units = 0.01, valve_samples_in_units = 0.005;
 /// Lower limits of the variation between several healthy runs. `least_gain_spread` applies to the relative
 /// gain, and `least_zero_share` applies to the zero offset as a share of the span. No finger repeats more
@@ -160,9 +159,10 @@ void choose(Base& base, const std::vector<BaseCandidate>& all, const std::vector
   base.alternatives = std::move(models);
 }
 
-std::size_t order_for(const Base& base) {
+std::size_t order_for(const Base& base, double time_unit_s) {
   if (base.judged == Judged::pressure) return whitening_order;
-  return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
+  const double bins = finger_memory_in_units * time_unit_s / base.bin_s;
+  return std::max(whitening_order, static_cast<std::size_t>(std::lround(bins)));
 }
 
 /// Returns the largest gain deviation of a further run. It is the smaller one of two values: a quantile for
@@ -272,7 +272,7 @@ Base fit_base(const std::vector<Record>& all_samples, Judged judged, Drive drive
   choose(base, base_candidates(records, judged, drive, base.largest_kpa, options), records, options);
   Binned peak_rate;
   for (const Record& record : records) peak_rate.push_back(peak_rate_of(record, base.bin_s));
-  base.whitener = whitener_of(base.left, peak_rate, order_for(base));
+  base.whitener = whitener_of(base.left, peak_rate, order_for(base, time_unit_s(all_samples)));
   for (const Record& record : records) base.records.push_back(thinned_for(base, record));
   spread(base);
   return base;

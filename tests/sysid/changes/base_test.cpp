@@ -63,6 +63,16 @@ TEST(Base, CommandDriveUsesShorterBinsThanMeasuredPressure) {
   EXPECT_DOUBLE_EQ(fit_base(behind_it, Judged::displacement, Drive::measured, {}).bin_s, 0.05);
 }
 
+TEST(Base, AFastRigHasShorterBins) {
+  std::vector<Log> logs = test::logs_of({}, 1, true);
+  for (Log& log : logs) {
+    for (double& t : log.time_s) t /= 1e4;
+  }
+  const std::vector<Record> fast = make_records(logs, {.drive = Drive::measured});
+  EXPECT_LT(finger_bin_s(fast), fast.front().length_s() / 100);
+  EXPECT_LT(fit_base(fast, Judged::displacement, Drive::measured, {}).bin_s, fast.front().length_s() / 100);
+}
+
 /// Returns copies of the logs whose readings come from a simulated finger behind a pressure regulator. The
 /// response of this regulator is not a first-order lag.
 std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
