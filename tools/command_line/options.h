@@ -62,7 +62,7 @@ void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
     const auto value = to_number(text);
     return value && *value >= lower && *value <= upper ? std::string() : "'" + text + "' is not " + range;
   };
-  return CLI::Validator(check, "");
+  return CLI::Validator(check, range);
 }
 
 /// Accepts a finite number above 0. Unlike CLI::PositiveNumber, it refuses NaN.
