@@ -69,7 +69,8 @@ class Logs:
         deviation of the walk after 100 samples."""
         log = np.genfromtxt(path, delimiter=",", names=True)
         walk = np.cumsum(np.random.default_rng(9).standard_normal(len(log))) * walk_mm / 10
-        return self.write(",".join(log.dtype.names), factor * log["time_s"], log["pressure_command_kpa"], log["displacement_mm"] + walk)
+        return self.write(",".join(log.dtype.names), factor * log["time_s"], log["pressure_command_kpa"],
+                          log["displacement_mm"] + walk)
 
     def slowed_model(self, model, factor):
         """Multiplies the time constants of the creep of a model by a factor."""

@@ -176,8 +176,8 @@ void Bus::exchange() noexcept {
     }
     ++report_.health.consecutive_failures;
     const bool another = told_failed_;
-    // If this thread was stopped during the exchange, its deadline has passed, but the board and the line may
-    // be in order. The gap is then the useful message.
+    // If this thread was stopped during the exchange, the deadline of the exchange has passed, although the
+    // board and the line may be in order. The gap is then the useful message.
     judge_gap(ended, 0);
     note_failure(status);
     if (another && status == BusStatus::closed_at_once) note_refusal(status);

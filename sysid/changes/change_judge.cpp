@@ -114,12 +114,6 @@ class Judge {
       say("search for changes in the later logs");
       std::vector<ScoredEffect> ranked =
           ranked_effects(readings, effects, found, tolerance, options_.threads);
-      // Each cause is named once. A second form of a named cause would only repeat its name.
-      std::erase_if(ranked, [&](const ScoredEffect& each) {
-        return std::any_of(found.begin(), found.end(), [&](const FittedEffect& named) {
-          return named.effect.id == each.fit.fitted.effect.id;
-        });
-      });
       if (step == 0) {
         for (const ScoredEffect& each : ranked)
           judged.tried.push_back({each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain,

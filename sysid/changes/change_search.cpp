@@ -54,9 +54,11 @@ double price_per_row(const LaterReadings& readings, const Effect& effect) {
   return price_of(effect) / static_cast<double>(std::max<std::size_t>(1, readings.rows().rows().size()));
 }
 
-std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const std::vector<Effect>& effects,
+std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, std::vector<Effect> effects,
                                          const std::vector<FittedEffect>& others, const Tolerance& tolerance,
                                          unsigned threads) {
+  for (const FittedEffect& other : others)
+    std::erase_if(effects, [&](const Effect& effect) { return effect.id == other.effect.id; });
   const Eigen::VectorXd without = readings.white(others);
   const double before = without.squaredNorm();
   const auto rows = static_cast<double>(std::max<std::size_t>(1, readings.rows().rows().size()));

@@ -32,10 +32,10 @@ using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& ot
 [[nodiscard]] Ties ties_in(const LaterReadings& readings, std::uint64_t seed);
 
 /// Returns the effects sorted by `gain` minus `usual`, the largest value first. The list contains one effect
-/// per cause. If the data cannot separate several forms of a cause, the list contains the form with the
-/// fewest parameters.
+/// per cause, and no cause of `others`, the effects that were found before. If the data cannot separate
+/// several forms of a cause, the list contains the form with the fewest parameters.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
-                                                       const std::vector<Effect>& effects,
+                                                       std::vector<Effect> effects,
                                                        const std::vector<FittedEffect>& others,
                                                        const Tolerance& tolerance, unsigned threads);
 

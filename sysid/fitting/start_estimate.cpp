@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -45,6 +44,8 @@ constexpr double independent_at_first = 5;
 /// Number of shifts that are tried within a period of the largest oscillation. The best of them is then
 /// refined.
 constexpr int tried_shifts = 16;
+/// Accuracy of the shift, as a share of the period. The resulting error is below 0.1 % of the amplitude.
+constexpr double shift_accuracy = 1e-4;
 
 Record beginning_of(const Record& unit) {
   std::vector<std::size_t> kept(samples_for_start(unit));
@@ -198,13 +199,12 @@ class StartSearch {
     Eigen::VectorXd sum_mm = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows_.size()));
     for (const model::BlockSpec& block : model_.blocks) {
       if (!model::is<model::PeriodicDisturbance>(block)) continue;
+      model::PeriodicDisturbance<double> oscillation(block.values, {});
       for (std::size_t r = 0; r < rows_.size(); ++r) {
         if (rows_[r] == 0) continue;  // a simulation begins with the first step after this sample
-        const model::Surroundings around = surroundings_at(beginning_, rows_[r]);
-        const double angle =
-            2 * std::numbers::pi * block.values[2] * (around.time_s + around.oscillation_shift_s + shift_s);
-        sum_mm[static_cast<Eigen::Index>(r)] +=
-            block.values[0] * std::sin(angle) + block.values[1] * std::cos(angle);
+        model::Surroundings around = surroundings_at(beginning_, rows_[r]);
+        around.oscillation_shift_s += shift_s;
+        sum_mm[static_cast<Eigen::Index>(r)] += oscillation.sample(0, 0, around);
       }
     }
     return sum_mm;
@@ -215,10 +215,11 @@ class StartSearch {
     double period_s = 0, largest_mm = 0;
     for (const model::BlockSpec& block : model_.blocks) {
       if (!model::is<model::PeriodicDisturbance>(block)) continue;
-      const double amplitude_mm = std::hypot(block.values[0], block.values[1]);
+      const double amplitude_mm = std::hypot(model::value<model::PeriodicDisturbance>(block, "sine_mm"),
+                                             model::value<model::PeriodicDisturbance>(block, "cosine_mm"));
       if (!(amplitude_mm > largest_mm)) continue;
       largest_mm = amplitude_mm;
-      period_s = 1 / block.values[2];
+      period_s = 1 / model::value<model::PeriodicDisturbance>(block, "frequency_hz");
     }
     return period_s;
   }
@@ -248,7 +249,7 @@ class StartSearch {
       best_s = shift_s;
     };
     for (int i = 1; i < tried_shifts; ++i) attempt(std::remainder(i * step_s, period_s));
-    for (; step_s > 1e-4 * period_s; step_s /= 2) {
+    for (; step_s > shift_accuracy * period_s; step_s /= 2) {
       const double centre_s = best_s;
       attempt(centre_s - step_s / 2);
       attempt(centre_s + step_s / 2);

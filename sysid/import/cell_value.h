@@ -1,9 +1,11 @@
 #pragma once
 // Interprets one cell of an imported text file as a number, a missing value, a time or another text.
+// Determines if the commas in a column of cells can separate thousands instead of being decimal commas.
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +40,25 @@ struct CellValue {
 /// Returns the value of a text that consists of decimal digits only; nullopt for any other text, and for a
 /// value that is too large.
 [[nodiscard]] std::optional<std::size_t> whole_number(std::string_view text);
+
+/// Commas in the cells of a column.
+class DecimalCommas {
+ public:
+  /// Adds the next cell of the column.
+  void add(const CellValue& cell, std::string_view text);
+
+  /// Returns the first cell such as "20,000", whose comma can be a decimal comma or separate thousands.
+  /// Returns "" if the commas have a clear meaning: a comma cannot separate thousands ("20,5"), or all
+  /// numbers have one comma. Numbers without a comma are ignored if all of them are the same code for a
+  /// missing value, such as 999 (sensor_codes.h).
+  /// @param values  values of the column.
+  [[nodiscard]] std::string ambiguous_cell(std::span<const double> values) const;
+
+ private:
+  std::string grouped_;      ///< first cell in which each comma can separate thousands
+  bool is_decimal_ = false;  ///< true: a comma cannot separate thousands
+  bool differs_ = false;     ///< true: a cell has several commas, or `without_comma_` is not unique
+  std::optional<double> without_comma_;  ///< first number without a comma
+};
 
 }  // namespace softgrip::sysid

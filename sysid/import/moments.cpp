@@ -273,6 +273,27 @@ std::optional<Nanoseconds> day_of(std::string_view text) {
   return moment && moment->dated && moment->time % day == 0 ? std::optional(moment->time) : std::nullopt;
 }
 
+bool DateColumn::has_name(std::string_view column) {
+  const std::string name = lower_case(split_unit(column).name);
+  return name == "date" || name == "datum";
+}
+
+void DateColumn::read(std::string_view text) {
+  if (text.empty() || text == text_) return;
+  const auto day = day_of(text);
+  if (day && day_) {
+    since_first_ += *day - *day_;
+  } else if (!text_.empty()) {
+    has_unread_change_ = true;
+  }
+  text_ = text;
+  day_ = day;
+}
+
+bool DateColumn::take_unread_change() {
+  return std::exchange(has_unread_change_, false);
+}
+
 std::string about_combined_times(const TableColumn& first, const TableColumn& second) {
   return "'" + document::shown(first.name, 40) + "' and '" + document::shown(second.name, 40) +
          "' are combined into one time";

@@ -52,7 +52,7 @@ struct TableColumn {
   /// True if the nanoseconds in this column were added to the times of another column (moments.h).
   bool is_part_of_time = false;
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
-  /// A cell such as "20,000", whose comma can be a decimal comma or separate thousands (decimal_commas.h);
+  /// A cell such as "20,000", whose comma can be a decimal comma or separate thousands (cell_value.h);
   /// empty: the commas of this column have a clear meaning.
   std::string ambiguous_comma;
   std::vector<BadCell> bad;  ///< the first cells of the column that could not be read

@@ -21,14 +21,14 @@ namespace softgrip::sysid {
 struct TextLine {
   int number = 0;
   std::string_view text;
-  int empty_above =
-      0;  ///< number of empty lines between this line and the previous line of TextLines::content
+  /// Number of empty lines between this line and the previous line of TextLines::content.
+  int empty_above = 0;
 };
 
 /// The comments of a text (#, %, //), and the lines that are neither empty nor comments.
 struct TextLines {
   std::vector<TextLine> content;
-  std::vector<TextLine> comments;  ///< texts of the comments without the marks at their begin
+  std::vector<TextLine> comments;  ///< texts of the comments without the marks at their beginning
 };
 [[nodiscard]] TextLines text_lines(std::string_view text);
 

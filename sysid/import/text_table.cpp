@@ -4,8 +4,6 @@
 #include <vector>
 
 #include "sysid/import/cell_value.h"
-#include "sysid/import/date_column.h"
-#include "sysid/import/decimal_commas.h"
 #include "sysid/import/fingers.h"
 #include "sysid/import/moments.h"
 #include "sysid/import/text_dialect.h"

@@ -152,6 +152,8 @@ std::size_t branches_of(const BaseStructure& structure, const StructureGrid& gri
       std::lower_bound(grid.ladder_s.begin(), grid.ladder_s.end(), grid.slow_from_s) - grid.ladder_s.begin());
 }
 
+/// Returns ColumnLayout::knot_interval_s(). The largest number of knots equals that of the cause
+/// sensor_drift.
 double knot_interval_of(const StructureGrid& grid, const std::vector<Record>& records) {
   constexpr double units = 20, most_knots = 16;
   double longest_s = 0;

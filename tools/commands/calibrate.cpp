@@ -47,7 +47,7 @@ struct CalibrateOptions {
 };
 
 /// Shortest ramp for the dead zone, as a multiple of the longest delay of the valve that the rig file
-/// permits.
+/// permits. During this delay, the command then rises by at most 10 % of the ramp.
 constexpr double delays_per_ramp = 10;
 
 std::string today() {
@@ -206,8 +206,9 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   if (options.dead_zone && options.ramp_s < delays_per_ramp * rig.settings.faults.pressure_delay_s) {
     return tl::unexpected(
         fail(ExitCode::usage, "--ramp-s " + significant(options.ramp_s) + " is too short: state at least " +
-                                  significant(delays_per_ramp * rig.settings.faults.pressure_delay_s) +
-                                  " (10 times pressure_delay_s of the rig file); during a shorter ramp, the "
+                                  significant(delays_per_ramp * rig.settings.faults.pressure_delay_s) + " (" +
+                                  significant(delays_per_ramp) +
+                                  " times pressure_delay_s of the rig file); during a shorter ramp, the "
                                   "delay of the valve looks like a dead zone"));
   }
   calibrate::Settings settings;

@@ -160,17 +160,15 @@ class Diagnostician {
 
   void use(std::vector<Record> records) {
     const model::Model given = deterministic_part(given_, options_.record.drive);
-    // If the given model contains an oscillation, the phase of each log remains the same during the search.
-    if (oscillates()) {
-      for (Record& record : records)
-        record.oscillation_shift_s += estimated_start(given, record).oscillation_shift_s;
-    }
+    std::vector<StartState> starts = estimated_starts(given, records);
+    // The phases of an oscillation in the given model are kept in the records, so that all fits use them.
+    for (std::size_t k = 0; k < records.size(); ++k)
+      records[k].oscillation_shift_s += std::exchange(starts[k].oscillation_shift_s, 0);
     data_ = make_search_data(std::move(records), given);
     data_.threads = options_.threads;
     data_.scales.has_valve = options_.record.drive == Drive::command;
     d_.records = data_.records;
-    d_.as_given = evaluate_structure(data_.records, {},
-                                     {data_.given.model, estimated_starts(data_.given.model, data_.records)});
+    d_.as_given = evaluate_structure(data_.records, {}, {data_.given.model, std::move(starts)});
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 

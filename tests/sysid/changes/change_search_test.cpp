@@ -26,6 +26,15 @@ TEST_F(ChangeSearch, DelayEffectRanksFirstForADelayedPressure) {
   EXPECT_TRUE(is_better(compare(paired_losses(later, later.white({}), ranked.front().fit.white), 0, 1)));
 }
 
+TEST_F(ChangeSearch, ACauseThatWasFoundIsNotRankedAgain) {
+  const LaterReadings later = readings({.delay_s = 0.06});
+  const std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
+  const std::vector<ScoredEffect> first = ranked_effects(later, effects, {}, {}, 1);
+  const std::vector<ScoredEffect> second = ranked_effects(later, effects, {first.front().fit.fitted}, {}, 1);
+  EXPECT_EQ(second.size(), first.size() - 1);
+  for (const ScoredEffect& each : second) EXPECT_NE(each.fit.fitted.effect.id, "transport_delay");
+}
+
 TEST_F(ChangeSearch, ErrorReductionInHealthyRunsLowersTheRank) {
   const LaterReadings later = readings({.delay_s = 0.06});
   const std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);

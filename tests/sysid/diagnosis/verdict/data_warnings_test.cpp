@@ -133,6 +133,16 @@ TEST(DenseLogs, DenseReadingsAreAveragedWithAWarning) {
   EXPECT_NE(warnings.front().find("2000 samples per second"), std::string::npos) << warnings.front();
 }
 
+TEST(DenseLogs, AFastRigNeedsItsReadings) {
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 2000, 0.02, 7);
+  for (double& t : log.time_s) t /= 1000;
+  std::vector<Record> records = make_records({log}, {});
+  ASSERT_GT(records.front().readings, enough_readings);
+  std::vector<std::string> warnings;
+  (void)average_dense(records, warnings);
+  EXPECT_GT(records.front().readings, enough_readings / 2) << "5 ms would leave 16 readings";
+}
+
 TEST(DenseLogs, LongAndShortLogsAreNotAveraged) {
   std::vector<std::string> warnings;
   std::vector<Record> long_campaign = records_at(100, 12);

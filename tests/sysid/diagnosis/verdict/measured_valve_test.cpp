@@ -72,6 +72,17 @@ TEST(MeasuredValve, HeldOutLossComesFromAFitToTheOtherBlocks) {
   }
 }
 
+TEST(MeasuredValve, ASlowLogHasLongerBlocks) {
+  const auto blocks_with = [](double factor) {
+    std::vector<Log> logs{straight_log(8, 0.5, 3)};
+    for (double& t : logs[0].time_s) t *= factor;
+    const MeasuredValve valve(logs, false);
+    return valve.held_out_losses({}, ValveStage{}).size();
+  };
+  EXPECT_EQ(blocks_with(1e3), blocks_with(1e5));
+  EXPECT_LT(blocks_with(1e3), 20U) << "a block of 8 s would be a part of one sample";
+}
+
 TEST(MeasuredValve, GaugeStandardErrorsMatchALinearRegression) {
   const std::vector<Log> logs{straight_log(40, 0, 5)};
   const MeasuredValve valve(logs, false);

@@ -1,11 +1,11 @@
-#include "sysid/import/decimal_commas.h"
+#include "sysid/import/cell_value.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-namespace softgrip::sysid::decimal_commas_test {
+namespace softgrip::sysid::cell_value_test {
 namespace {
 
 std::string ambiguous(const std::vector<std::string>& cells) {
@@ -43,4 +43,4 @@ TEST(DecimalCommas, CodeForAMissingValueNeedsNoComma) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::decimal_commas_test
+}  // namespace softgrip::sysid::cell_value_test
