@@ -17,6 +17,7 @@
 #include "model/named.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/multistart.h"
+#include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
@@ -193,11 +194,9 @@ void add_warnings(Identification& result) {
   if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before convergence");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
+  for (std::string& sentence : start_warnings(result)) result.warnings.push_back(std::move(sentence));
   for (const Record& record : result.records) {
-    if (record.start_unknown) {
-      result.warnings.push_back(record.name +
-                                " does not start from rest, so the initial state of this log was estimated");
-    } else if (record.offset_free) {
+    if (record.offset_free && !record.start_unknown) {
       result.warnings.push_back(
           record.name +
           " does not begin with readings of 0 without pressure, so an offset of the sensor was estimated");
@@ -228,6 +227,28 @@ MultiStart multistart_of(std::vector<double> rmse_mm) {
   });
   const auto starts = static_cast<double>(rmse_mm.size());
   return {rmse_mm.size(), static_cast<double>(reached) / starts, std::move(rmse_mm)};
+}
+
+std::vector<std::string> start_warnings(const Identification& result) {
+  std::vector<std::string> sentences;
+  for (std::size_t k = 0; k < result.records.size(); ++k) {
+    const Record& record = result.records[k];
+    if (!record.start_unknown) continue;
+    const double fitted_mm = result.scores[k].rmse_mm;
+    const double predicted_mm =
+        score_of(result.fitted, record, estimated_start(result.fitted, record), record.reading_mm).rmse_mm;
+    std::string sentence =
+        record.name + " does not start from rest, so the initial state of this log was estimated";
+    if (!(predicted_mm <= limits::comparable_ratio * fitted_mm)) {
+      sentence +=
+          " from all its readings. validate and diagnose estimate it from the first readings of a log. "
+          "This leads to an RMSE of " +
+          significant(predicted_mm, 3) + " instead of " + significant(fitted_mm, 3) + " " +
+          std::string(model::name_of(record.output_unit)) + ". Record a log that starts from rest";
+    }
+    sentences.push_back(std::move(sentence));
+  }
+  return sentences;
 }
 
 tl::expected<Identification, std::string> identify(const std::vector<Log>& logs, const model::Model& start,

@@ -140,11 +140,7 @@ void add_warnings(Identification& result) {
   if (!result.converged) result.warnings.emplace_back("the search stopped before convergence");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
-  for (const Record& record : result.records) {
-    if (record.start_unknown)
-      result.warnings.push_back(record.name +
-                                " does not start from rest, so the initial state of this log was estimated");
-  }
+  for (std::string& sentence : start_warnings(result)) result.warnings.push_back(std::move(sentence));
 }
 
 }  // namespace

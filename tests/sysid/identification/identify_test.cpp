@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "base/numbers.h"
 #include "model/catalogue.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
+#include "sysid/identification/validate.h"
 #include "tests/sysid/integrated.h"
 #include "tests/sysid/simulated.h"
 
@@ -206,6 +208,26 @@ TEST(Identify, EstimatesTheStateInWhichALogBegins) {
   IdentifyOptions rest;
   rest.record.start = Start::rest;
   EXPECT_GT(identify(logs, truth, rest)->rmse_mm, 1.5 * result->rmse_mm);
+}
+
+/// A fit uses all readings for the state in which a log begins. `validate` uses only the first readings.
+TEST(StartWarnings, StateTheErrorThatValidateReports) {
+  const Model finger = loaded("zhang2025");
+  const Log log = slice(simulated(finger, SignalName::tp1, 50, 0.05, 11), 330, 1000);
+  const double validated_mm = validate_logs(finger, {log}, {}).scores.front().rmse_mm;
+  Identification result;
+  result.fitted = finger;
+  result.records = make_records({log}, {});
+  for (const double ratio : {1.1, 2.0}) {
+    result.scores = {Score()};
+    result.scores.front().rmse_mm = validated_mm / ratio;
+    const std::vector<std::string> sentences = start_warnings(result);
+    ASSERT_EQ(sentences.size(), 1U);
+    const std::string& sentence = sentences.front();
+    EXPECT_NE(sentence.find("the initial state of this log was estimated"), std::string::npos) << sentence;
+    EXPECT_EQ(sentence.find("RMSE of " + significant(validated_mm, 3)) != std::string::npos, ratio > 1.5)
+        << sentence;
+  }
 }
 
 /// The log has one amplitude and begins under pressure. The data therefore cannot separate the hysteresis
