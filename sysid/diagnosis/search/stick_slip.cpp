@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/search/stick_slip.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -303,12 +304,15 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   // The start value may be below the true band. A path can then reach nearly every valve position by short
   // jumps. As long as the model behind the valve is inaccurate, the error of this path is smaller than that
   // of the true path. Therefore a second search starts at twice the band.
-  for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
-    auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
-    if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)
-      return found;
-  }
-  return std::nullopt;
+  std::array<std::optional<StickSlip>, 2> found;
+  parallel_for(found.size(), threads, [&](std::size_t i) {
+    found[i] = stick_slip_from(records, behind, i == 0 ? band_kpa : 2 * band_kpa, resolution_kpa, threads);
+  });
+  const auto explains = [&](const std::optional<StickSlip>& each) {
+    return each && is_a_band(*each, resolution_kpa) && each->fit.mean_square_mm2 < behind.mean_square_mm2;
+  };
+  const auto first = std::find_if(found.begin(), found.end(), explains);
+  return first == found.end() ? std::nullopt : std::move(*first);
 }
 
 std::optional<StickSlip> stick_slip_without(const std::vector<Record>& records, const StickSlip& found,
