@@ -2,7 +2,6 @@
 // Finds the strongest lines in the spectrum of a residual. They are the start values for the fit of a
 // sustained oscillation.
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -18,10 +17,11 @@ struct Line {
   double cosine_mm = 0;
 };
 
-/// Returns the lowest frequency of an oscillation in a measurement campaign of this length [Hz]. A variation
-/// with a lower frequency counts as a drift of the zero offset.
+/// Returns the lowest frequency of an oscillation in a measurement campaign of this length [Hz]. The campaign
+/// contains 10 periods of it. A slower variation counts as a drift of the zero offset.
 [[nodiscard]] inline double slowest_oscillation_hz(double campaign_s) {
-  return std::max(0.2, 10 / std::max(campaign_s, 1.0));
+  constexpr double fewest_periods = 10;
+  return fewest_periods / campaign_s;
 }
 
 /// Returns the three most significant lines in the spectrum of the residual, the most significant first. The
