@@ -240,14 +240,17 @@ void Recorder::end(const char* state) {
   Recording& now = *recording_;
   now.story.state = now.folder.healthy() ? state : "stopped_early";
   write_json();
-  const std::string error = now.folder.error();
-  if (error.empty()) {
-    tell("recording_finished", Severity::information,
-         fmt::format("Recorded {} rows in {}.", now.story.rows, now.folder.path()));
-  } else {
+  if (const std::string& error = now.folder.error(); !error.empty()) {
     block();
     tell("recording_failed", Severity::error,
          fmt::format("The recording ended early; control continues: {}.", error));
+  } else if (const std::string& json_error = now.folder.json_error(); !json_error.empty()) {
+    tell("recording_failed", Severity::error,
+         fmt::format("Recorded all {} rows in {}, but run.json could not be written: {}.", now.story.rows,
+                     now.folder.path(), json_error));
+  } else {
+    tell("recording_finished", Severity::information,
+         fmt::format("Recorded {} rows in {}.", now.story.rows, now.folder.path()));
   }
   show();
   recording_.reset();
@@ -272,7 +275,8 @@ void Recorder::show() {
   if (!recording_) return;
   status_.folder = recording_->folder.path();
   status_.rows = recording_->story.rows;
-  status_.error = recording_->folder.error();
+  const RunFolder& folder = recording_->folder;
+  status_.error = folder.error().empty() ? folder.json_error() : folder.error();
 }
 
 RecorderStatus Recorder::status() const {

@@ -61,7 +61,8 @@ RunFolder::RunFolder(RunFolder&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       durable_(other.durable_),
       whole_bytes_(other.whole_bytes_),
-      error_(std::move(other.error_)) {}
+      error_(std::move(other.error_)),
+      json_error_(std::move(other.json_error_)) {}
 
 RunFolder& RunFolder::operator=(RunFolder&& other) noexcept {
   std::swap(path_, other.path_);
@@ -69,6 +70,7 @@ RunFolder& RunFolder::operator=(RunFolder&& other) noexcept {
   std::swap(durable_, other.durable_);
   std::swap(whole_bytes_, other.whole_bytes_);
   std::swap(error_, other.error_);
+  std::swap(json_error_, other.json_error_);
   return *this;
 }
 
@@ -112,7 +114,7 @@ bool RunFolder::sync() {
 
 bool RunFolder::replace_json(std::string_view text) {
   const auto written = write_file(path_ + "/run.json", text, durable_ ? Sync::disk : Sync::none);
-  if (!written && error_.empty()) error_ = written.error();
+  json_error_ = written ? std::string() : written.error();
   return written.has_value();
 }
 

@@ -36,10 +36,12 @@ class RunFolder {
   bool append(std::string_view lines);
   /// Waits until the appended lines are on the disk. Returns false if the disk reports an error.
   bool sync();
-  /// Replaces run.json by a new version in one step. A failure is reported, but rows are still recorded.
+  /// Replaces run.json by a new version in one step. Rows are still recorded after a failure.
   bool replace_json(std::string_view text);
-  /// Returns a sentence about the first disk error; empty if there was none.
+  /// Returns a sentence about the first disk error of run.csv; empty if there was none.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
+  /// Returns a sentence about the failure of the last replace_json(); empty if it succeeded.
+  [[nodiscard]] const std::string& json_error() const noexcept { return json_error_; }
   /// Returns true if rows can still be written, because no write to run.csv has failed.
   [[nodiscard]] bool healthy() const noexcept { return descriptor_ >= 0; }
 
@@ -53,7 +55,7 @@ class RunFolder {
   int descriptor_ = -1;
   bool durable_ = true;
   std::int64_t whole_bytes_ = 0;  // size of run.csv after the last successful append
-  std::string error_;
+  std::string error_, json_error_;
 };
 
 }  // namespace softgrip::daemon

@@ -8,6 +8,7 @@
 
 #include "base/enum_table.h"
 #include "base/sha256.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "daemon/recording/run_folder.h"
 #include "daemon/service/daemon_parts.h"
@@ -139,10 +140,11 @@ void DaemonParts::conclude(Outcome& outcome) {
   if (!options.record_folder.empty()) outcome.recording_error = recorder.status().error;
   outcome.safe_state_confirmed = shared.safe_state_confirmed.load(std::memory_order_acquire);
   for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {
-    const bool on = control::pressed(rig.settings.channels[i].limits, outcome.last.channels[i].safe_kpa);
-    outcome.pressure_left_on = outcome.pressure_left_on || on;
-    if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
+    const double safe_kpa = outcome.last.channels[i].safe_kpa;
+    if (control::pressed(rig.settings.channels[i].limits, safe_kpa))
+      outcome.left_on.push_back({outcome.channel_names[i], safe_kpa});
   }
+  if (!outcome.left_on.empty()) outcome.vents_after_s = seconds(board->watchdog_time().count());
   if (outcome.ending == Ending::asked && one_shot_run) conclude_one_shot_run(*one_shot_run, outcome);
   if (outcome.ending == Ending::not_idle && !service.bus_failure().text.empty()) {
     outcome.ending = Ending::board_unreachable;
@@ -191,6 +193,18 @@ bool reached_the_board(Ending ending) noexcept {
          ending != Ending::gpio_failed;
 }
 
+std::string left_on_sentence(const Outcome& outcome) {
+  if (outcome.left_on.empty() || !outcome.safe_state_confirmed) return {};
+  const std::string channels = enumerated(outcome.left_on, " and ", [](const Outcome::LeftOn& each) {
+    return fmt::format("{} ({:.3g} kPa)", each.channel, each.pressure_kpa);
+  });
+  const char* verb = outcome.left_on.size() == 1 ? "remains" : "remain";
+  if (outcome.vents_after_s <= 0)
+    return fmt::format("{} {} under pressure, because the board has no watchdog that vents", channels, verb);
+  return fmt::format("{} {} under pressure until the board's watchdog vents in {:g} s", channels, verb,
+                     outcome.vents_after_s);
+}
+
 ExitCode exit_code_of(const Outcome& outcome) noexcept {
   const ExitCode done = !outcome.safe_state_confirmed     ? ExitCode::failed
                         : outcome.recording_error.empty() ? ExitCode::done
@@ -220,24 +234,21 @@ ExitCode exit_code_of(const Outcome& outcome) noexcept {
   return ExitCode::failed;
 }
 
-tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile rig, DaemonOptions options) {
+tl::expected<std::unique_ptr<Daemon>, NotCreated> Daemon::create(rig::RigFile rig, DaemonOptions options) {
+  const auto refused = [](std::string text, ExitCode code = ExitCode::usage) {
+    return tl::unexpected(NotCreated{code, std::move(text)});
+  };
   if (std::string there = recorded_already(options.record_folder); !there.empty())
-    return tl::unexpected(std::move(there));
+    return refused(std::move(there), ExitCode::state_refused);
   if (options.virtual_time) {
-    if (!std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board)) {
-      return tl::unexpected(
-          std::string("virtual time needs a simulated board, because a real board runs in real time"));
-    }
-    if (rig.gpio) {
-      return tl::unexpected(
-          std::string("virtual time does not support digital lines, but this rig file has `gpio`"));
-    }
-    if (!options.sequence && !options.duration_s) {
-      return tl::unexpected(std::string("virtual time requires an end: give a sequence or a duration"));
-    }
+    if (!std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board))
+      return refused("virtual time needs a simulated board, because a real board runs in real time");
+    if (rig.gpio) return refused("virtual time does not support digital lines, but this rig file has `gpio`");
+    if (!options.sequence && !options.duration_s)
+      return refused("virtual time requires an end: give a sequence or a duration");
     if (options.sequence && !options.duration_s && waits_for_a_release(options.sequence->prepared)) {
-      return tl::unexpected(std::string(
-          "this sequence would hold for ever, because in virtual time no client can request a release"));
+      return refused(
+          "this sequence would hold for ever, because in virtual time no client can request a release");
     }
   }
   return std::unique_ptr<Daemon>(
@@ -257,7 +268,7 @@ Outcome Daemon::run() {
 
 tl::expected<Outcome, std::string> run_daemon(rig::RigFile rig, DaemonOptions options) {
   const auto daemon = Daemon::create(std::move(rig), std::move(options));
-  if (!daemon) return tl::unexpected(daemon.error());
+  if (!daemon) return tl::unexpected(daemon.error().text);
   return (*daemon)->run();
 }
 

@@ -79,8 +79,12 @@ struct Outcome {
   std::vector<std::string> channel_names;
   std::string recording_error;        ///< reason why record_folder is incomplete; empty if it is complete
   bool safe_state_confirmed = false;  ///< true: at the end, the board confirmed the safe outputs
-  bool pressure_left_on = false;      ///< true: for at least one channel, the safe output is a pressure that
-                                      ///< differs from rest (control::pressed())
+  /// A channel whose safe output is a pressure that differs from rest (control::pressed()).
+  struct LeftOn {
+    std::string channel;
+    double pressure_kpa = 0;
+  };
+  std::vector<LeftOn> left_on;
   double vents_after_s = 0;  ///< time until the board's watchdog vents the channels under pressure [s]; 0: no
                              ///< channel is under pressure, or the board has no watchdog
   int signal = 0;  ///< first signal that requested the end of the run before the outputs were safe; 0: there
@@ -94,22 +98,31 @@ struct Outcome {
 /// unknown.
 [[nodiscard]] bool reached_the_board(Ending ending) noexcept;
 
+/// Returns a sentence that names the channels in Outcome::left_on, their pressures, and when the board vents
+/// them. Returns "" if there are none, or if the board did not confirm its safe outputs.
+[[nodiscard]] std::string left_on_sentence(const Outcome& outcome);
+
 /// Returns the exit code for the result of a run: 0, 1, 3, 4, 5 or 6. The manual describes these codes.
 [[nodiscard]] ExitCode exit_code_of(const Outcome& outcome) noexcept;
 
 /// Creates the board of a rig file and does not connect it. `clock` must exist longer than the board.
 [[nodiscard]] std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock);
 
+/// The reason why a daemon cannot be created.
+struct NotCreated {
+  ExitCode code;
+  std::string text;  ///< a sentence
+};
+
 struct DaemonParts;  // defined in daemon_parts.h
 
 class Daemon {
  public:
-  /// Creates the daemon. `rig` must be valid. The error is a sentence. There is an error if record_folder
-  /// already contains a recording. With virtual time, there is also an error in these cases: a real board;
-  /// digital lines; neither a sequence nor a duration; a sequence that holds until a release, without a
-  /// duration.
-  [[nodiscard]] static tl::expected<std::unique_ptr<Daemon>, std::string> create(rig::RigFile rig,
-                                                                                 DaemonOptions options);
+  /// Creates the daemon. `rig` must be valid. There is an error if record_folder already contains a
+  /// recording. With virtual time, there is also an error in these cases: a real board; digital lines;
+  /// neither a sequence nor a duration; a sequence that holds until a release, without a duration.
+  [[nodiscard]] static tl::expected<std::unique_ptr<Daemon>, NotCreated> create(rig::RigFile rig,
+                                                                                DaemonOptions options);
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
   Daemon(Daemon&&) = delete;

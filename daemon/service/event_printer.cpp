@@ -133,10 +133,8 @@ void EventPrinter::print_end(const Outcome& outcome) {
     logger_->error("the recording is incomplete: {}", outcome.recording_error);
   if (outcome.safe_state_confirmed) {
     logger_->info("the board confirmed the safe outputs");
-    if (outcome.vents_after_s > 0)
-      logger_->warn(
-          "the board's watchdog will vent the outputs in {:g} s; until then, the outputs keep their values",
-          outcome.vents_after_s);
+    if (const std::string sentence = left_on_sentence(outcome); !sentence.empty())
+      logger_->warn("{}", sentence);
   } else {
     logger_->error("the board did NOT confirm the safe outputs");
   }

@@ -352,7 +352,7 @@ void RealRun::note_and_keep(const BoardLock& lock) {
 /// Removes the stored copy of the rig file if all outputs are at rest. While a finger may be pressurised, the
 /// copy is kept, because it contains the safe outputs of this run.
 void RealRun::forget_if_rested() {
-  if (outcome_.safe_state_confirmed && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
+  if (outcome_.safe_state_confirmed && outcome_.left_on.empty()) forget_rig(parts_.rig.path);
 }
 
 Outcome RealRun::run() {

@@ -12,6 +12,7 @@
 
 #include "base/exit_code.h"
 #include "base/files.h"
+#include "base/numbers.h"
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"
@@ -38,6 +39,20 @@ struct Arguments {
   std::optional<double> duration_s;
 };
 
+/// Accepts a number of seconds for which the clock can represent the end of the run. CLI::Range accepts NaN.
+CLI::Validator duration() {
+  constexpr double longest_s = 1e8;
+  const auto check = [=](const std::string& text) {
+    const auto value = to_number(text);
+    return value && *value > 0 && *value <= longest_s ? std::string()
+                                                      : fmt::format(
+                                                            "'{}' is not a number above 0 and up to "
+                                                            "{:g}",
+                                                            text, longest_s);
+  };
+  return CLI::Validator(check, "");
+}
+
 void declare(CLI::App& program, Arguments& arguments) {
   program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
   program.add_flag("--check", arguments.check,
@@ -62,7 +77,7 @@ void declare(CLI::App& program, Arguments& arguments) {
       ->type_name("FILE");
   program.add_option("--duration-s", arguments.duration_s, "exit after S seconds")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(duration());
   program.add_option("--record", arguments.record, "write one recording of the whole run into this folder")
       ->type_name("DIR");
   program
@@ -197,8 +212,8 @@ ExitCode run(const Arguments& arguments) {
 
   auto daemon = daemon::Daemon::create(std::move(*rig), std::move(options));
   if (!daemon) {
-    complain(daemon.error());
-    return ExitCode::usage;
+    complain(daemon.error().text);
+    return daemon.error().code;
   }
   const daemon::Outcome outcome = (*daemon)->run();
   printer.print_end(outcome);

@@ -45,6 +45,7 @@ class AsyncGripper:
         client has missed, as far as the daemon still stores them."""
         await self._hang_up()
         reader, self._writer = await self._open()
+        self._session.failure = None  # it belonged to the previous connection
         self._reading = asyncio.create_task(self._read(reader))
         try:
             self.hello = Hello.of(await self.ask("hello", client=self.name, api=API), "hello")

@@ -134,6 +134,7 @@ class Gripper:
     def _open(self) -> Hello:
         end = time.monotonic() + self.answer_s
         self._wire = Wire(self.path, end)
+        self._session.failure = None  # it belonged to the previous connection
         try:
             hello = Hello.of(self.ask("hello", client=self.name, api=API), "hello")
             self._session.greeted(hello)

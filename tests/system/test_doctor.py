@@ -244,6 +244,8 @@ class Calibrate(bench.BenchTest):
         self.softgrip("calibrate", "--rig", rig, expect=2)  # the option --channel is missing
         typo = self.softgrip("calibrate", "--rig", rig, "--channel", "lft", "--sensor", expect=2)
         self.assertIn("the rig has no channel `lft`; give one of its channels with --channel: left, right", typo.stderr)
+        few = self.softgrip("calibrate", "--rig", rig, *quick, "--repeats", "2", "--gauge-mm", "5", "20", "6", expect=2)
+        self.assertIn("--gauge-mm has 3 readings, but 2 or 4 are necessary", few.stderr)
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
     QUICK = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.5", "--average-s", "0.3")

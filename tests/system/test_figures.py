@@ -72,6 +72,8 @@ class Figures(unittest.TestCase):
         self.softgrip("plot", first, "--channel", "left", "--out", self.folder / "x.svg", expect=2)
         beyond = self.softgrip("plot", first, "--from", 1000, "--out", self.folder / "x.svg", expect=2)
         self.assertIn("has no samples from 1000 s on: the recording lasts from 0 to", beyond.stderr)
+        before = self.softgrip("plot", first, "--to", -1, "--out", self.folder / "x.svg", expect=2)
+        self.assertIn("has no samples up to -1 s: the recording lasts from 0 to", before.stderr)
 
         over = self.softgrip("plot", first, second, "--from", 10, "--to", 12, "--out", "-").stdout
         self.assertIn(">measured, steps_100.csv<", over)

@@ -123,6 +123,15 @@ class Python(bench.BenchTest):
         self.assertIn("off_model", codes)
         self.assertLessEqual(codes, {"off_model", "moves"})
 
+    def test_the_error_of_a_connection_ends_with_the_connection(self):
+        gripper = self.gripper()
+        with self.assertRaises(softgrip.ProtocolError):
+            gripper.start("x" * 100_000)
+        gripper.reconnect()
+        self.assertEqual(self.softgripd.end(), 0)
+        with self.assertRaises(softgrip.ConnectionLost):
+            gripper.status()
+
     def test_asyncio_tasks_share_one_connection(self):
         async def work():
             seen = []

@@ -167,7 +167,7 @@ class Hold(bench.BenchTest):
         sentence = "hold: a part is held only while softgripd runs; the watchdog vents the fingers 0.5 s after the program ends"
         self.assertIn(sentence, check)
         self.assertIn(sentence, start)
-        self.assertIn("the board's watchdog will vent the outputs in 0.5 s; until then, the outputs keep their values", end)
+        self.assertIn("remain under pressure until the board's watchdog vents in 0.5 s", end)
         self.assertEqual(max(outputs_kpa), 0)
 
     def test_a_board_without_a_watchdog_holds_after_the_daemon_ends(self):
@@ -178,7 +178,7 @@ class Hold(bench.BenchTest):
         check, start, end, outputs_kpa = self.ends_holding(emulator, rig)
         for text in (check, start, end):
             self.assertNotIn("the watchdog vents the fingers", text)
-            self.assertNotIn("until then, the outputs keep", text)
+        self.assertIn("remain under pressure, because the board has no watchdog that vents", end)
         self.assertGreater(min(outputs_kpa), 10)
 
 

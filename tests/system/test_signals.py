@@ -1,13 +1,16 @@
 """Tests commands that are interrupted by a signal. The command must write safe outputs and then end by the same
 signal, so that a shell script that runs the command stops as well."""
 
+import json
 import os
+import re
 import signal
 import subprocess
 import time
 
 import bench
 
+NO_WATCHDOG = "the outputs keep their last pressure when softgripd dies"
 INTERRUPTING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -92,6 +95,31 @@ class Interrupted(bench.BenchTest):
 class WithoutABoard(bench.BenchTest):
     """Tests a run in virtual time. A signal interrupts an endless sequence, and the recording must be closed
     properly."""
+
+    def test_a_run_that_leaves_a_finger_under_pressure_states_this(self):
+        text = (self.folder / "config/sequences/pick_stone.yaml").read_text()
+        released = text.index("  - release")
+        self.write("keep.yaml", text[:released])
+        for watchdog, sentence, vents_after_s in (
+                ("0.5", "remain under pressure until the board's watchdog vents in 0.5 s", 0.5),
+                ("0", "remain under pressure, because the board has no watchdog that vents", None)):
+            rig = self.write("config/kept.yaml", self.rig_with_watchdog(watchdog))
+            run = ("run", "keep.yaml", "--rig", rig, "--virtual-time", "--quiet")
+            self.assertIn(sentence, self.softgrip(*run).stdout)
+            result = json.loads(self.softgrip(*run, "--json").stdout)
+            self.assertEqual(result.get("vents_after_s"), vents_after_s)
+            self.assertEqual(set(result["pressure_left_on_kpa"]), {"left", "right"})
+            self.assertGreater(min(result["pressure_left_on_kpa"].values()), 5)
+        released = json.loads(self.softgrip("run", "config/sequences/pick_stone.yaml", "--virtual-time", "--quiet",
+                                            "--json").stdout)
+        self.assertEqual(released["pressure_left_on_kpa"], {})
+
+    def rig_with_watchdog(self, timeout_s):
+        """Returns the text of the rig file with this watchdog time of the board."""
+        text = (self.folder / "config/rig.yaml").read_text()
+        text, count = re.subn(r"watchdog_timeout_s: \S+", f"watchdog_timeout_s: {timeout_s}", text)
+        self.assertEqual(count, 1)
+        return text if timeout_s != "0" else text.replace("safety:\n", f"safety:\n  accept_no_watchdog: {NO_WATCHDOG}\n")
 
     def test_an_interrupted_virtual_run_completes_its_recording(self):
         for number in INTERRUPTING:

@@ -42,6 +42,8 @@ class Tune(bench.BenchTest):
     def test_tune_rejects_invalid_options_and_files(self):
         for number in ("0", "-200", "nan", "inf", "fast", "1e9"):
             self.tune("--rate-hz", number, "--out", "pid.yaml", expect=2)
+        for seed in ("-1", "18446744073709551616", "1.5"):
+            self.tune("--seed", seed, "--out", "pid.yaml", expect=2)
         self.tune("--feedforward", "magic", "--out", "pid.yaml", expect=2)
         self.tune("--rig", "config/rig.yaml", "--channel", "thumb", "--out", "pid.yaml", expect=2)
         self.tune(expect=2)  # the option --out is missing
@@ -50,6 +52,10 @@ class Tune(bench.BenchTest):
             self.assertIn("absent.yaml", done.stderr)
         self.write("file", "")
         self.tune("--out", "file/pid.yaml", expect=4)
+        vacuum = (self.folder / "config/rig.yaml").read_text().replace("pressure_min_kpa: 0", "pressure_min_kpa: 20")
+        low = self.tune("--rig", self.write("config/never_low.yaml", vacuum), "--pressure-max-kpa", "10", "--out", "pid.yaml",
+                        expect=2)
+        self.assertIn("--pressure-max-kpa 10 is not above the lowest pressure of the channel, 20 kPa", low.stderr)
         self.tune("--noise-mm", "nan", "--out", "pid.yaml", expect=2)
         bad = self.write("bad.yaml", "name: bad\nsource: x\nactuator:\n  - bouc_wenn: {}\n")
         self.assertIn("bad.yaml:4:5", self.softgrip("tune", "--model", bad, "--out", "pid.yaml", expect=3).stderr)

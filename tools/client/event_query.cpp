@@ -40,7 +40,11 @@ std::optional<Nanoseconds> parse_local_time(const std::string& text, Nanoseconds
     parts.tm_hour = parts.tm_min = parts.tm_sec = 0;
     parts.tm_isdst = -1;
     const char* const end = ::strptime(text.c_str(), format, &parts);
-    if (end != nullptr && *end == '\0') return static_cast<Nanoseconds>(std::mktime(&parts)) * ns_per_s;
+    if (end == nullptr || *end != '\0') continue;
+    const int day = parts.tm_mday;
+    const time_t time_s = std::mktime(&parts);
+    // mktime() changes a day that does not exist, such as 31 February, to another day.
+    if (parts.tm_mday == day) return static_cast<Nanoseconds>(time_s) * ns_per_s;
   }
   return std::nullopt;
 }

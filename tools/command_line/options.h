@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -47,14 +48,6 @@ Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std:
   return {command, options.get()};
 }
 
-/// Adds --seed and --threads to a command that uses random start points and resampling.
-template <class Seed, class Threads>
-void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
-  command.add_option("--seed", seed, "Seed of the random start points and of the resampling")
-      ->capture_default_str();
-  command.add_option("--threads", threads, "Number of threads; 0: one per core")->capture_default_str();
-}
-
 /// Accepts a number between `lower` and `upper`, bounds included. Unlike CLI::Range, it refuses NaN.
 [[nodiscard]] inline CLI::Validator number_between(double lower, double upper) {
   const std::string range = "a number from " + significant(lower) + " to " + significant(upper);
@@ -87,6 +80,20 @@ void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
                      std::to_string(upper);
   };
   return CLI::Validator(check, "");
+}
+
+/// Accepts a seed. CLI11 converts numbers that are negative or too large to other seeds.
+[[nodiscard]] inline CLI::Validator seed_number() {
+  return whole_between(0, std::numeric_limits<std::uint64_t>::max());
+}
+
+/// Adds --seed and --threads to a command that uses random start points and resampling.
+template <class Seed, class Threads>
+void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
+  command.add_option("--seed", seed, "Seed of the random start points and of the resampling")
+      ->check(seed_number())
+      ->capture_default_str();
+  command.add_option("--threads", threads, "Number of threads; 0: one per core")->capture_default_str();
 }
 
 }  // namespace softgrip::tools

@@ -89,6 +89,16 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
   return all;
 }
 
+/// Refuses a number of prepared answers that does not match the number of visits.
+std::optional<ExitCode> refuse_number_of_answers(const std::string& option,
+                                                 const std::vector<std::string>& answers,
+                                                 std::size_t repeats) {
+  if (answers.empty() || answers.size() == 2 || answers.size() == 2 * repeats) return std::nullopt;
+  return fail(ExitCode::usage, option + " has " + std::to_string(answers.size()) + " readings, but " +
+                                   (repeats == 1 ? "2" : "2 or " + std::to_string(2 * repeats)) +
+                                   " are necessary");
+}
+
 /// Returns an exit code if a daemon uses the board of the rig, else nullopt.
 std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, const rig::RigFile& rig) {
   if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
@@ -203,6 +213,10 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
       }
     }
   }
+  if (const auto code = refuse_number_of_answers("--gauge-mm", options.gauge_mm, options.repeats))
+    return tl::unexpected(*code);
+  if (const auto code = refuse_number_of_answers("--manometer-kpa", options.manometer_kpa, options.repeats))
+    return tl::unexpected(*code);
   if (options.dead_zone && options.ramp_s < delays_per_ramp * rig.settings.faults.pressure_delay_s) {
     return tl::unexpected(
         fail(ExitCode::usage, "--ramp-s " + significant(options.ramp_s) + " is too short: state at least " +

@@ -51,6 +51,10 @@ void report(const RunOptions& options, const daemon::Outcome& outcome, const std
               {"ticks", outcome.ticks},    {"overruns", outcome.overruns},
               {"slips", outcome.overruns}, {"wall_s", outcome.wall_s},
               {"results", Json::object()}};
+    json["pressure_left_on_kpa"] = Json::object();
+    for (const daemon::Outcome::LeftOn& each : outcome.left_on)
+      json["pressure_left_on_kpa"][each.channel] = each.pressure_kpa;
+    if (outcome.vents_after_s > 0) json["vents_after_s"] = outcome.vents_after_s;
     if (!reason.empty()) json["reason"] = reason;
     for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
     print_json(json);
@@ -69,6 +73,8 @@ void report(const RunOptions& options, const daemon::Outcome& outcome, const std
               significant(outcome.wall_s, 4).c_str(),
               outcome.safe_state_confirmed ? "the board confirmed the safe outputs"
                                            : "the board did NOT confirm the safe outputs");
+  if (const std::string sentence = daemon::left_on_sentence(outcome); !sentence.empty())
+    std::printf("warning: %s\n", sentence.c_str());
   if (!reason.empty()) std::printf("%s\n", reason.c_str());
 }
 
@@ -120,7 +126,7 @@ ExitCode run(const RunOptions& options) {
     if (!options.quiet) std::fprintf(stderr, "%s\n", text.c_str());
   };
   auto daemon = daemon::Daemon::create(std::move(*rig), std::move(daemon_options));
-  if (!daemon) return fail(ExitCode::usage, daemon.error());
+  if (!daemon) return fail(daemon.error().code, daemon.error().text);
   const daemon::Outcome outcome = (*daemon)->run();
   if (!outcome.message.empty()) fail(ExitCode::failed, outcome.message);
   if (!outcome.recording_error.empty())
@@ -142,7 +148,8 @@ void add_run(CLI::App& program, ExitCode& outcome) {
   command->add_flag(
       "--virtual-time", options->virtual_time,
       "Run as fast as possible, with identical results in every run; only for simulated boards");
-  command->add_option("--seed", options->seed, "Seed of a simulated board; overrides the rig file");
+  command->add_option("--seed", options->seed, "Seed of a simulated board; overrides the rig file")
+      ->check(seed_number());
   command->add_flag("--no-socket", options->no_socket,
                     "Do not open the socket of the rig file, so that no client can connect");
   command->add_flag("--quiet", options->quiet, "Print only the results");

@@ -107,7 +107,7 @@ std::string json_of(const TuneOptions& options, const control::TuneTask& task, c
   json["mean_mm"] = task.mean_mm;
   json["amplitude_mm"] = task.amplitude_mm;
   json["seed"] = task.seed;
-  return json.dump() + "\n";
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 ExitCode run(const TuneOptions& chosen) {
@@ -127,6 +127,11 @@ ExitCode run(const TuneOptions& chosen) {
   }
   if (options.rate_hz) task.rate_hz = *options.rate_hz;
   if (options.pressure_max_kpa) task.channel.limits.pressure_max_kpa = *options.pressure_max_kpa;
+  const control::LimitSettings& limits = task.channel.limits;
+  if (!(limits.pressure_max_kpa > limits.pressure_min_kpa))
+    return fail(ExitCode::usage, "--pressure-max-kpa " + significant(limits.pressure_max_kpa) +
+                                     " is not above the lowest pressure of the channel, " +
+                                     significant(limits.pressure_min_kpa) + " kPa");
   if (options.feedforward) {
     task.channel.feedforward.kind = control::feedforward_names.find(*options.feedforward).value();
   }
@@ -195,7 +200,9 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   command->add_option("--draws", options->task.draws, "Number of simulated fingers with model errors")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--seed", options->task.seed, "Seed of fingers and noise")->capture_default_str();
+  command->add_option("--seed", options->task.seed, "Seed of fingers and noise")
+      ->check(seed_number())
+      ->capture_default_str();
   command
       ->add_option("--out", options->out, "File for the `pid:` block of the rig file ('-': standard output)")
       ->required();

@@ -191,8 +191,8 @@ void examine_disk(const rig::RigFile& rig, Findings& findings) {
     return findings.ok("disk", "nothing is recorded (recorder: mode: off)");
   }
   const std::filesystem::path folder = existing(recorder.directory);
-  const bool there = std::filesystem::exists(recorder.directory);
   std::error_code error;
+  const bool there = std::filesystem::exists(recorder.directory, error);
   if (there && !std::filesystem::is_directory(recorder.directory, error)) {
     return findings.fail("disk", recorder.directory + " is no folder", "change recorder: directory");
   }

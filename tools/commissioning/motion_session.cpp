@@ -192,6 +192,10 @@ MotionSession::Expected<void> MotionSession::step(bool may_rise, const Watch& wa
   if (blind_cycles_ == 0) may_rise_ = true;
   if (blind_cycles_ >= rig_.settings.faults.invalid_reading_cycles) return end(blind());
   if (watch) watch(commands_, readings_);
+  // A finger that creeps can leave its limits at a constant pressure.
+  if (moved_) {
+    if (auto failure = beyond()) return end(std::move(*failure));
+  }
   return {};
 }
 
@@ -275,7 +279,6 @@ MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to
     // a jump of the pressure after a reconnection.
     if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
     if (auto done = step(true, watch); !done) return done;
-    if (auto failure = beyond()) return end(std::move(*failure));
   }
   return {};
 }

@@ -129,6 +129,8 @@ Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoin
 }
 
 std::optional<std::string> invalid(const Sample& sample) {
+  if (sample.invalid == 0 && sample.count == 0)
+    return "the board sent no reading in half of the averaging time: increase --average-s";
   if (sample.invalid == 0) return std::nullopt;
   return fmt::format(
       "{} of {} readings are not valid ({}): the signal is outside its valid range, or the sensor reports "
@@ -291,9 +293,9 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
     if (!halves) return tl::unexpected(halves.error());
     const Sample& first = halves->first.displacement_mm;
     const Sample& second = halves->second.displacement_mm;
-    const auto why = invalid(first.invalid > 0 ? first : second);
-    if (why || first.count + second.count == 0) {
-      person.tell("skipped: " + why.value_or("no reading"));
+    const auto why = invalid(first.invalid > 0 || first.count == 0 ? first : second);
+    if (why) {
+      person.tell("skipped: " + *why);
       continue;
     }
     const auto count = static_cast<double>(first.count + second.count);

@@ -152,7 +152,13 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   if (!outcome) return failed(outcome.error());
   // A signal at the very end of an experiment does not stop this experiment, but it must prevent the next
   // experiment.
-  if (outcome->signal != 0) return stopped("stopped by the user; the rig is vented");
+  if (outcome->signal != 0) {
+    if (!outcome->safe_state_confirmed)
+      return failed("stopped by the user, but the board did NOT confirm the safe outputs",
+                    daemon::exit_code_of(*outcome));
+    const std::string left_on = daemon::left_on_sentence(*outcome);
+    return stopped("stopped by the user; " + (left_on.empty() ? "the rig is vented" : left_on));
+  }
   if (outcome->ending != daemon::Ending::sequence_ended || !outcome->sequence_end ||
       *outcome->sequence_end != control::SequenceEnd::done) {
     const std::string& why = outcome->message.empty() ? fault : outcome->message;

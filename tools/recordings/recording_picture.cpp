@@ -211,6 +211,12 @@ sysid::Figure figure_of(const sysid::Recording& first, const sysid::Recording& s
   return figure;
 }
 
+/// Returns a text such as " from 2 to 3 s"; an infinite end of the interval is omitted.
+std::string interval_text(double from_s, double to_s) {
+  if (!std::isfinite(from_s)) return std::isfinite(to_s) ? " up to " + significant(to_s) + " s" : "";
+  return " from " + significant(from_s) + (std::isfinite(to_s) ? " to " + significant(to_s) + " s" : " s on");
+}
+
 tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& recording,
                                                     const std::string& channel, double from_s, double to_s) {
   sysid::Recording part = recording;
@@ -222,8 +228,7 @@ tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& reco
     const auto first = std::lower_bound(log.time_s.begin(), log.time_s.end(), from_s);
     const auto last = std::upper_bound(log.time_s.begin(), log.time_s.end(), to_s);
     if (last - first < 2)
-      return tl::unexpected(recording.name + " has no samples from " + significant(from_s) +
-                            (std::isfinite(to_s) ? " to " + significant(to_s) + " s" : " s on") +
+      return tl::unexpected(recording.name + " has no samples" + interval_text(from_s, to_s) +
                             ": the recording lasts from " + significant(log.time_s.front()) + " to " +
                             significant(log.time_s.back()) + " s");
     sysid::Log cut = sysid::slice(log, static_cast<std::size_t>(first - log.time_s.begin()),

@@ -338,7 +338,7 @@ class PanelOfDaemon : public ::testing::Test {
     DaemonOptions options;
     options.open_gpio = [this](auto) { return open(); };
     auto daemon = Daemon::create(std::move(rig), std::move(options));
-    ASSERT_TRUE(daemon) << daemon.error();
+    ASSERT_TRUE(daemon) << daemon.error().text;
     daemon_ = std::move(*daemon);
     thread_ = std::thread([this] { outcome_ = daemon_->run(); });
     client_.emplace(folder_.path() + "/socket");
@@ -462,7 +462,7 @@ TEST(PanelRun, VirtualTimeRefusesDigitalLines) {
   options.duration_s = 1;
   const auto daemon = Daemon::create(std::move(rig), options);
   ASSERT_FALSE(daemon);
-  EXPECT_NE(daemon.error().find("digital lines"), std::string::npos);
+  EXPECT_NE(daemon.error().text.find("digital lines"), std::string::npos);
 }
 
 }  // namespace

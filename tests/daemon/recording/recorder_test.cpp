@@ -221,6 +221,25 @@ TEST_F(RecorderTest, AFullDiskEndsTheRecordingWithAnErrorEvent) {
   EXPECT_FALSE(recorder().status().error.empty());
 }
 
+/// A folder with the name of run.json makes the replacement fail, also for the user root.
+TEST_F(RecorderTest, AFailureOfRunJsonDoesNotEndTheRecording) {
+  provenance_.virtual_time = false;
+  event(Event::Kind::sequence_started, {}, 7);
+  ticks(10, State::running);
+  ASSERT_EQ(folders().size(), 1U);
+  const std::filesystem::path path = std::filesystem::path(temporary_.path()) / folders().front();
+  std::filesystem::remove(path / "run.json");
+  std::filesystem::create_directories(path / "run.json" / "in the way");
+  ticks(600, State::idle);
+  const auto events = log_.since(0, 100);
+  EXPECT_EQ(events.back().kind, "recording_failed");
+  EXPECT_NE(events.back().text.find("Recorded all "), std::string::npos) << events.back().text;
+  event(Event::Kind::sequence_started, {}, 8);
+  ticks(10, State::running);
+  recorder().finish();
+  EXPECT_EQ(folders().size(), 2U) << "the next recording starts at once";
+}
+
 TEST_F(RecorderTest, ANewRecordingStartsAMinuteAfterAWriteFailure) {
   settings_.directory = "/proc/softgrip";
   event(Event::Kind::sequence_started, {}, 7);

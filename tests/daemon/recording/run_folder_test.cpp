@@ -111,7 +111,10 @@ TEST(RunFolder, AFailedReplacementKeepsTheOldRunJson) {
   EXPECT_EQ(text_of(temporary.path() + "/run.json"), "{\"a\":1}");
   EXPECT_EQ(files_in(temporary.path()), 2U) << "a failed write leaves no incomplete file";
   EXPECT_TRUE(folder->healthy());
-  EXPECT_FALSE(folder->error().empty());
+  EXPECT_TRUE(folder->error().empty()) << folder->error();
+  EXPECT_NE(folder->json_error().find("File too large"), std::string::npos) << folder->json_error();
+  EXPECT_TRUE(folder->replace_json("{}"));
+  EXPECT_EQ(folder->json_error(), "");
 }
 
 }  // namespace

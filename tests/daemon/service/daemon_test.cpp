@@ -17,7 +17,7 @@ TEST(Daemon, VirtualTimeRequiresAnEndOfTheRun) {
   options.virtual_time = true;
   const auto daemon = Daemon::create(testing::example_rig("rig.yaml"), options);
   ASSERT_FALSE(daemon);
-  EXPECT_NE(daemon.error().find("end"), std::string::npos);
+  EXPECT_NE(daemon.error().text.find("end"), std::string::npos);
 }
 
 TEST(Daemon, VirtualTimeNeedsASimulatedBoard) {
@@ -26,7 +26,7 @@ TEST(Daemon, VirtualTimeNeedsASimulatedBoard) {
   options.duration_s = 1;
   const auto daemon = Daemon::create(testing::example_rig("rig_tcp.yaml"), options);
   ASSERT_FALSE(daemon);
-  EXPECT_NE(daemon.error().find("simulated"), std::string::npos);
+  EXPECT_NE(daemon.error().text.find("simulated"), std::string::npos);
 }
 
 TEST(Daemon, RunsASequenceAndReportsItsResult) {
@@ -38,7 +38,7 @@ TEST(Daemon, RunsASequenceAndReportsItsResult) {
   std::vector<std::string> kinds;
   options.on_event = [&kinds](const EventEntry& event) { kinds.push_back(event.kind); };
   const auto daemon = Daemon::create(std::move(rig), options);
-  ASSERT_TRUE(daemon) << daemon.error();
+  ASSERT_TRUE(daemon) << daemon.error().text;
   const Outcome outcome = (*daemon)->run();
   EXPECT_EQ(outcome.ending, Ending::sequence_ended);
   EXPECT_EQ(outcome.sequence_end, control::SequenceEnd::done);
@@ -62,11 +62,13 @@ TEST(Daemon, ReportsRemainingPressureFor5KpaAndNotFor50Pa) {
     ASSERT_TRUE(loaded) << loaded.error().format();
     options.sequence = *loaded;
     const auto daemon = Daemon::create(std::move(rig), options);
-    ASSERT_TRUE(daemon) << daemon.error();
+    ASSERT_TRUE(daemon) << daemon.error().text;
     const Outcome outcome = (*daemon)->run();
     EXPECT_EQ(outcome.sequence_end, control::SequenceEnd::done);
     EXPECT_NEAR(outcome.last.channels[0].safe_kpa, std::stod(kpa), 1e-3);
-    EXPECT_EQ(outcome.pressure_left_on, on) << kpa;
+    EXPECT_EQ(!outcome.left_on.empty(), on) << kpa;
+    const std::string sentence = left_on_sentence(outcome);
+    EXPECT_EQ(sentence.find("left (" + std::string(kpa) + " kPa)") != std::string::npos, on) << sentence;
     EXPECT_EQ(outcome.last.under_pressure != 0, on) << kpa;
   }
 }

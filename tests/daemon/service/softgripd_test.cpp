@@ -252,6 +252,12 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
   EXPECT_EQ(code({"--config", rig, "--fly"}), 2);
   EXPECT_EQ(code({"--config", rig, "--virtual-time"}), 2)
       << "in virtual time, softgripd requires an end of the run";
+  for (const char* duration_s : {"nan", "1e10", "0", "-1", "long"})
+    EXPECT_EQ(code({"--config", rig, "--virtual-time", "--duration-s", duration_s}), 2) << duration_s;
+  const std::vector<std::string> recorded{"--config", rig,        "--virtual-time",       "--duration-s",
+                                          "0.1",      "--record", folder_.path() + "/rec"};
+  EXPECT_EQ(code(recorded), 0);
+  EXPECT_EQ(code(recorded), 5) << "a recording is never overwritten";
   EXPECT_EQ(code({"--help"}), 0);
   EXPECT_EQ(code({"--version"}), 0);
   EXPECT_EQ(code({"--config", rig, "--check"}), 0);

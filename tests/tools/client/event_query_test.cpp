@@ -35,7 +35,8 @@ TEST_F(EventQueryTest, SinceAcceptsAnEventIdADurationOrATime) {
   EXPECT_EQ(since("04:15"), "2025-11-20T03:15:00.000Z");
   EXPECT_EQ(since("2025-11-19"), "2025-11-18T23:00:00.000Z");
   EXPECT_EQ(since("2025-11-19 10:15:30"), "2025-11-19T09:15:30.000Z");
-  for (const char* nonsense : {"", "yesterday", "10 parsec", "25:70", "12345678901234567890", "9999999d"}) {
+  for (const char* nonsense :
+       {"", "yesterday", "10 parsec", "25:70", "2026-02-31", "12345678901234567890", "9999999d"}) {
     EXPECT_EQ(since(nonsense), "refused") << nonsense;
   }
 }

@@ -69,7 +69,7 @@ class VentingBoard final : public drivers::Board {
     for (std::size_t i = 0; i < readings.size(); ++i) {
       readings[i].sampled_at = clock_.now();
       readings[i].validity = validity;
-      readings[i].displacement_mm = outputs_kpa[i] / 3;
+      readings[i].displacement_mm = outputs_kpa[i] / 3 + crept_mm;
       readings[i].pressure_kpa = monitored ? outputs_kpa[i] : std::nan("");
       ++readings[i].sequence;
     }
@@ -98,6 +98,7 @@ class VentingBoard final : public drivers::Board {
   bool request_arrives = false;  ///< true: in a failed exchange, the request has arrived, and only the
                                  ///< response is lost
   model::Validity validity = model::Validity::valid;
+  double crept_mm = 0;    ///< additional displacement of the fingers [mm]
   bool monitored = true;  ///< false: the pressure monitors give no readings
 
   std::vector<double> outputs_kpa{0, 0};
@@ -402,6 +403,22 @@ TEST_F(MotionSessionTest, SingleInvalidReadingsDoNotEndTheMotion) {
   MotionSession session(rig_, board_, clock_, stop());
   session.require({0, true, false});
   EXPECT_TRUE(move(session));
+}
+
+TEST_F(MotionSessionTest, AFingerThatCreepsBeyondItsLimitsEndsTheMotion) {
+  MotionSession session(rig_, board_, clock_, stop());
+  ASSERT_TRUE(session.connect());
+  board_.crept_mm = 1000;
+  EXPECT_TRUE(session.sample(0.1)) << "no finger was moved";
+  board_.crept_mm = 0;
+  ASSERT_TRUE(session.ramp(0, pressure_kpa, speed_kpa_per_s));
+  ASSERT_TRUE(session.sample(0.1));
+  board_.crept_mm = 1000;
+  const auto creeping = session.sample(600);
+  ASSERT_FALSE(creeping);
+  EXPECT_EQ(creeping.error().kind, Kind::beyond);
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
 }
 
 TEST_F(MotionSessionTest, AStopByTheUserEndsTheMotionAtTheRestPressure) {

@@ -64,6 +64,15 @@ TEST(ExperimentRig, EveryEndingHasAnExitCodeAndAFaultIsNamed) {
   daemon::Outcome interrupted = outcome_of(Ending::interrupted, std::nullopt, true);
   interrupted.signal = SIGINT;
   EXPECT_TRUE(refused(interrupted).stopped);
+  EXPECT_EQ(refused(interrupted).why, "stopped by the user; the rig is vented");
+  interrupted.left_on = {{"left", 30}};
+  EXPECT_EQ(
+      refused(interrupted).why,
+      "stopped by the user; left (30 kPa) remains under pressure, because the board has no watchdog that "
+      "vents");
+  interrupted.safe_state_confirmed = false;
+  EXPECT_FALSE(refused(interrupted).stopped);
+  EXPECT_EQ(refused(interrupted).code, ExitCode::failed);
 }
 
 TEST(ExperimentRig, CommissioningReturnsTheExitCodeOfTheExperiment) {
