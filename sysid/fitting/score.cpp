@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -97,8 +98,11 @@ Score score_of(const model::Model& model, const Record& record, const StartState
   score.rmse_percent_of_span = record.span_mm > 0 ? 100 * score.rmse_mm / record.span_mm : none;
   const std::vector<std::size_t> cycles = cycle_starts(record);
   if (cycles.size() > 1) {
-    score.first_cycle_rmse_mm = rms_error(read.first(cycles[1]), errors.first(cycles[1]));
-    score.settled_rmse_mm = rms_error(read.subspan(cycles[1]), errors.subspan(cycles[1]));
+    const auto rmse_of = [](std::span<const double> part, std::span<const double> part_errors) {
+      return finite_count(part) > 0 ? rms_error(part, part_errors) : none;
+    };
+    score.first_cycle_rmse_mm = rmse_of(read.first(cycles[1]), errors.first(cycles[1]));
+    score.settled_rmse_mm = rmse_of(read.subspan(cycles[1]), errors.subspan(cycles[1]));
   } else {
     score.first_cycle_rmse_mm = score.settled_rmse_mm = none;
   }

@@ -161,7 +161,7 @@ class StartSearch {
   }
 
   [[nodiscard]] Trial best_of(const std::vector<StartState>& starts, const Trust& trust) const {
-    Trial best;
+    Trial best = with_creep(starts.front(), trust);
     for (const StartState& start : starts) {
       Trial trial = with_creep(start, trust);
       if (trial.cost < best.cost) best = std::move(trial);

@@ -174,10 +174,16 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     if (!done.contains(name_of(path))) unread.push_back(path);
   }
   RunScores scores;
+  std::map<std::string, fs::path> path_of;
   for (std::size_t i = 0; i < unread.size(); ++i) {
     end_if_cancelled();
     if (on_recording) on_recording(i + 1, unread.size());
-    score_one(unread[i], base_of, scores);
+    const fs::path path = fs::path(unread[i]).lexically_normal();
+    const auto [first, is_new] = path_of.try_emplace(name_of(unread[i]), path);
+    if (is_new)
+      score_one(unread[i], base_of, scores);
+    else if (first->second != path)
+      scores.skipped.push_back({first->first, "another recording has the same name: rename " + unread[i]});
   }
   return scores;
 }

@@ -113,7 +113,7 @@ std::string identify_json(const IdentifyReport& report) {
   json["iterations"] = r.iterations;
   json["converged"] = r.converged;
   json["wall_s"] = r.wall_s;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace softgrip::sysid

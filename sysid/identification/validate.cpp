@@ -139,7 +139,7 @@ std::string validate_json(const Validation& v, const std::vector<Log>& logs) {
     json["offset_mm"][v.scores[i].name] = v.scores[i].start.offset_mm;
   }
   json["wall_s"] = v.wall_s;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace softgrip::sysid

@@ -5,6 +5,21 @@
 
 namespace softgrip::sysid {
 
+void fill_missing(std::vector<double>& column) {
+  std::size_t last = column.size();  // index of the last finite value; column.size(): no value is finite
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (!std::isfinite(column[i])) continue;
+    const std::size_t from = last == column.size() ? 0 : last + 1;
+    for (std::size_t j = from; j < i; ++j) {
+      const double share =
+          last == column.size() ? 1 : static_cast<double>(j - last) / static_cast<double>(i - last);
+      column[j] = last == column.size() ? column[i] : column[last] + share * (column[i] - column[last]);
+    }
+    last = i;
+  }
+  for (std::size_t j = last + 1; j < column.size() && last < column.size(); ++j) column[j] = column[last];
+}
+
 FiniteValues finite_values(std::span<const double> column) {
   FiniteValues finite;
   for (std::size_t i = 0; i < column.size(); ++i) {

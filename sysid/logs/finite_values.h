@@ -18,6 +18,10 @@ struct FiniteValues {
 
 [[nodiscard]] std::size_t finite_count(std::span<const double> column);
 
+/// Replaces missing values by linear interpolation between their neighbours, and at the ends by the nearest
+/// value. A column without any value stays unchanged.
+void fill_missing(std::vector<double>& column);
+
 struct ColumnExtent {
   double lowest = 0;
   double highest = 0;

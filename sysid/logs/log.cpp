@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "base/files.h"
@@ -21,13 +21,18 @@ namespace {
 /// Makes the names of the logs unique, because reports and JSON refer to logs by name. For example, the
 /// second log with the name "run" becomes "run (2)".
 void make_names_unique(std::vector<Log>& logs) {
-  std::map<std::string, int> seen;
-  for (Log& log : logs) {
-    if (const int count = ++seen[log.name]; count > 1) log.name += " (" + std::to_string(count) + ")";
-  }
+  std::set<std::string> used;
+  for (Log& log : logs) log.name = unique_name(log.name, used);
 }
 
 }  // namespace
+
+std::string unique_name(const std::string& name, std::set<std::string>& used) {
+  std::string unique = name;
+  for (int count = 2; !used.insert(unique).second; ++count)
+    unique = name + " (" + std::to_string(count) + ")";
+  return unique;
+}
 
 tl::expected<std::string, std::string> log_file_of(const std::string& path) {
   namespace fs = std::filesystem;

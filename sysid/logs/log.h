@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -104,6 +105,9 @@ struct Campaign {
   /// file does not count.
   bool unreadable = false;
 };
+
+/// Returns `name`, or a text such as "name (2)" if `used` contains the name. Adds the result to `used`.
+[[nodiscard]] std::string unique_name(const std::string& name, std::set<std::string>& used);
 
 /// Returns the file of the log at `path`: run.csv if `path` is the folder of a recording, otherwise `path`.
 /// Returns an error sentence if `path` is a folder without run.csv.

@@ -12,6 +12,7 @@
 #include "sysid/logs/first_readings.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/isolated_values.h"
+#include "sysid/logs/log_columns.h"
 #include "sysid/logs/sensor_codes.h"
 #include "sysid/logs/signal_gaps.h"
 
@@ -59,6 +60,7 @@ class Check {
     time_plausible();
     magnitudes(options.command_unit);
     if (!options.need_readings) return;
+    remove_empty_columns();
     first_command();
     first_readings();
     isolated_pressures();
@@ -91,6 +93,17 @@ class Check {
 
   [[nodiscard]] std::string in_unit(std::string_view text) const {
     return model::in_unit(text, log_.output_unit);
+  }
+
+  /// Removes the optional columns with fewer than two values, because they cannot be interpolated.
+  void remove_empty_columns() {
+    for (const KnownColumn& known : known_columns) {
+      std::vector<double>& values = log_.*known.values;
+      if (known.required || values.empty() || finite_count(values) > 1) continue;
+      values.clear();
+      note_correction(0, "the column " + std::string(known.name) +
+                             " has fewer than two values, so it is treated as missing");
+    }
   }
 
   bool time_increases() {

@@ -20,21 +20,6 @@
 namespace softgrip::sysid {
 namespace {
 
-void fill_missing(std::vector<double>& values) {
-  std::size_t last = values.size();  // index of the last finite value; values.size(): no value is finite
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) continue;
-    const std::size_t from = last == values.size() ? 0 : last + 1;
-    for (std::size_t j = from; j < i; ++j) {
-      const double share =
-          last == values.size() ? 1 : static_cast<double>(j - last) / static_cast<double>(i - last);
-      values[j] = last == values.size() ? values[i] : values[last] + share * (values[i] - values[last]);
-    }
-    last = i;
-  }
-  for (std::size_t j = last + 1; j < values.size() && last < values.size(); ++j) values[j] = values[last];
-}
-
 /// Returns the readings before the drive changes.
 std::vector<double> readings_before_motion(const Record& record) {
   const auto moves = std::ranges::find_if(record.drive_kpa, [&](double kpa) {

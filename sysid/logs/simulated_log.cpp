@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "model/chain.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -17,12 +18,11 @@ double sample_time_of(const Log& log) {
   return log.size() < 2 ? 0 : sampling_of(log).sample_time_s();
 }
 
-model::Surroundings surroundings_at(const Log& log, std::size_t i) {
-  model::Surroundings surroundings;
-  surroundings.time_s = log.time_s[i];
-  if (!log.supply_kpa.empty()) surroundings.supply_kpa = log.supply_kpa[i];
-  if (!log.temperature_c.empty()) surroundings.temperature_c = log.temperature_c[i];
-  return surroundings;
+/// Returns a copy of a column without missing values; empty if the column has no value.
+std::vector<double> filled(std::vector<double> column) {
+  if (finite_count(column) == 0) return {};
+  fill_missing(column);
+  return column;
 }
 
 }  // namespace
@@ -48,10 +48,14 @@ void simulate(const model::Model& model, const SimulationSettings& settings, Log
   const std::uint64_t noise_seed = derived_seed(settings.seed, added_noise);
   chain.reset(log.pressure_command_kpa.front());
   log.output_unit = model.output_unit;
+  const std::vector<double> supply_kpa = filled(log.supply_kpa), temperature_c = filled(log.temperature_c);
   double previous_s = log.time_s.front();
   for (std::size_t i = 0; i < log.size(); ++i) {
     const double duration_s = log.time_s[i] - previous_s;
-    const model::Surroundings surroundings = surroundings_at(log, i);
+    model::Surroundings surroundings;
+    surroundings.time_s = log.time_s[i];
+    if (!supply_kpa.empty()) surroundings.supply_kpa = supply_kpa[i];
+    if (!temperature_c.empty()) surroundings.temperature_c = temperature_c[i];
     const std::size_t driving = settings.held && i > 0 ? i - 1 : i;
     if (settings.held) chain.step(0, log.pressure_command_kpa[driving], surroundings);
     const double reading_mm = chain.step(duration_s, log.pressure_command_kpa[driving], surroundings);

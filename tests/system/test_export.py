@@ -93,6 +93,16 @@ class Signals(bench.BenchTest):
                       "left_pressure_command_kpa", "--displacement", "left_displacement_mm")
         same(self, columns_of(self.folder / "log.csv")["displacement_mm"], [math.nan, *foreign_files.TIP[1:]])
 
+    def test_mat_names_that_agree_in_their_first_63_characters_are_all_written(self):
+        name = "a_topic_with_a_long_path_" * 3
+        rows = [f"time_s,pressure_command_kpa,displacement_mm,{name}1,{name}2,{name}3"]
+        rows += [f"{0.01 * i:.2f},{i % 50},{0.1 * (i % 50):.1f},1,2,{3 + i % 50}" for i in range(200)]
+        self.write("long.csv", "\n".join(rows) + "\n")
+        self.export("long.mat", source="long.csv")
+        self.softgrip("import", "long.mat", "--time", "time_s", "--command", "pressure_command_kpa", "--displacement",
+                      f"{name[:58]}_3", "--unit", "displacement=mm", "--out", "log.csv")
+        self.assertEqual(columns_of(self.folder / "log.csv")["displacement_mm"], [3 + i % 50 for i in range(200)])
+
     def test_mcap_follows_the_specification(self):
         self.export("run.mcap")
         topics = mcap_reading.read(self.folder / "run.mcap")
@@ -205,6 +215,16 @@ class PerLog(bench.BenchTest):
                                told["rmse_mm"]["a"], places=9)
         for path in ("o/b/series.csv", "o/a (2)/series.csv"):
             self.assertEqual(set(self.series(path, "identified")["held_out"]), {1.0})
+
+    def test_each_of_several_logs_with_the_same_name_has_its_series(self):
+        for folder, name in (("one", "a"), ("two", "b")):
+            (self.folder / folder).mkdir()
+            shutil.copy(self.folder / f"{name}.csv", self.folder / folder / "run.csv")
+        self.softgrip("identify", "--data", "one/run.csv", "two/run.csv", "--validate", "one/run.csv", "--out", "o", "--start",
+                      MODEL, "--starts", "2", timeout_s=120)
+        for path, name in (("o/run", "a"), ("o/run (2)", "b"), ("o/run (3)", "a")):
+            self.assertEqual(self.series(f"{path}/series.csv", "identified")["measured_mm"],
+                             columns_of(self.folder / f"{name}.csv")["displacement_mm"])
 
     def test_validate_writes_the_series_of_each_log(self):
         self.softgrip("validate", "--model", MODEL, "--data", "a.csv", "b.csv", "--out", "o")

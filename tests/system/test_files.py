@@ -93,6 +93,42 @@ class Overwriting(bench_files.Files):
         self.softgrip("import", "raw.csv", "--map", "new.import.yaml", "--out", "new.csv")
         self.assertEqual((self.folder / "new.csv").read_bytes(), before)
 
+    def test_a_folder_that_cannot_be_written_is_refused_before_the_computation(self):
+        for line in (f"diagnose --model {TWIN} --data log.csv", "identify --data log.csv"):
+            for option in ("--out", "--figures"):
+                other = () if option == "--out" else ("--out", "out")
+                done = self.softgrip(*line.split(), *other, option, "/proc/softgrip", expect=4)
+                self.assertIn("cannot create /proc/softgrip", done.stderr)
+                self.assertNotIn("search", done.stderr)
+
+    def test_a_change_diagnosis_refuses_the_options_that_it_does_not_use(self):
+        for unused in (("--gauge", "gauge.csv"), ("--nulls", "19"), ("--propose",), ("--pressure-max-kpa", "70")):
+            done = self.softgrip("diagnose", "--model", TWIN, "--healthy", "log.csv", "--data", "log.csv", "--out", "out",
+                                 *unused, expect=2)
+            self.assertIn(unused[0], done.stderr)
+        missing = self.softgrip("diagnose", "--baseline", "none", "--data", "log.csv", "--out", "out", expect=4)
+        self.assertIn("none/baseline.json", missing.stderr)
+
+    def test_a_change_diagnosis_removes_the_model_of_an_earlier_diagnosis(self):
+        self.softgrip("diagnose", "--model", TWIN, "--data", "log.csv", "--out", "out", "--no-closed-loop", timeout_s=120)
+        self.assertTrue((self.folder / "out/model.yaml").exists())
+        self.softgrip("diagnose", "--model", TWIN, "--healthy", "log.csv", "--data", "log.csv", "--out", "out", timeout_s=120)
+        self.assertFalse((self.folder / "out/model.yaml").exists())
+        self.assertEqual(json.loads((self.folder / "out/diagnosis.json").read_text())["question"], "change")
+
+    def test_a_name_that_is_not_utf_8_loses_no_result(self):
+        name = os.fsdecode(b"l\xf6g.csv")
+        shutil.copy(self.folder / "log.csv", self.folder / name)
+        folder, log = os.fsencode(self.folder), os.fsencode(self.folder / name)
+        for arguments in (("validate", "--model", TWIN, "--data", log, "--out", "valid", "--json"),
+                          ("identify", "--data", log, "--starts", "1", "--out", "identified", "--json"),
+                          ("simulate", "--model", TWIN, "--input", log, "--out", "out.csv", "--json")):
+            done = subprocess.run([os.fsencode(bench.SOFTGRIP), *(a if isinstance(a, bytes) else str(a).encode()
+                                                                  for a in arguments)], cwd=folder, capture_output=True,
+                                  timeout=bench.PATIENCE_S)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            json.loads(done.stdout.decode())
+
     def test_scores_that_cannot_be_read_are_not_replaced(self):
         self.record()
         self.softgrip("baseline", "--data", "log.csv", "--model", TWIN, "--out", "base")

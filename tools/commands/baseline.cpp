@@ -236,7 +236,9 @@ ExitCode checked_again(BaselineOptions options) {
   const auto check = checked(options, *runs, *model, holds);
   if (!check) return check.error();
   if (options.json) {
-    std::printf("%s\n", Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}.dump(2).c_str());
+    std::printf("%s\n", Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}
+                            .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                            .c_str());
   } else {
     std::printf("Baseline in %s: the files of the baseline are unchanged. %s\n", folder.c_str(),
                 text_of_check(*check).c_str());

@@ -61,7 +61,7 @@ tl::expected<std::string, std::string> write_into(const std::string& folder, con
   if (contents.gauge)
     about["gauge"] = writer.write("gauge.csv", contents.gauge->bytes, contents.gauge->source);
   about["model"] = writer.write("model.yaml", model::to_yaml(contents.model));
-  std::string text = about.dump(2) + "\n";
+  std::string text = about.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   (void)writer.write("baseline.json", text);
   if (!writer.why().empty()) return Failure(writer.why());
   return text;

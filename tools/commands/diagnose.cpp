@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/files.h"
 #include "base/numbers.h"
 #include "sysid/changes/baseline_folder.h"
 #include "sysid/diagnosis/report/report.h"
@@ -136,7 +137,7 @@ ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std
     limits.pressure_max_kpa = std::max(limits.pressure_max_kpa, sysid::largest_command_kpa(logs));
   wanted.experiment.limits = limits;
   wanted.experiment.threads = options.diagnosis.threads;
-  wanted.closed_loop = !options.no_closed_loop;
+  wanted.closed_loop = !options.no_closed_loop && limits.pressure_max_kpa > 0;
   wanted.seed = options.diagnosis.seed;
   return wanted;
 }
@@ -183,7 +184,10 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
   DiagnoseOptions options = chosen;
   if (!options.baseline.empty()) {
     const auto baseline = sysid::read_baseline(options.baseline);
-    if (!baseline) return fail(ExitCode::input_refused, baseline.error());
+    if (!baseline) {
+      const bool there = is_there(options.baseline + "/baseline.json");
+      return fail(there ? ExitCode::input_refused : ExitCode::io, baseline.error());
+    }
     options.healthy = baseline->logs;
     if (options.model.empty()) options.model = baseline->model;
   }
@@ -193,6 +197,7 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs, unit_of(*model));
   if (!logs) return logs.error();
+  if (const auto code = prepare_report(options.out, options.figures)) return *code;
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
@@ -254,22 +259,28 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
           "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html, and series.csv per log")
       ->required();
   add_figures_option(*command, options->figures);
-  command->add_option(
+  std::vector<CLI::Option*> unused_for_a_change;
+  unused_for_a_change.push_back(command->add_option(
       "--gauge", options->gauge,
-      "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)");
-  command
-      ->add_option("--nulls", options->diagnosis.null_campaigns,
-                   "Number of simulated data sets without any cause, from which the p-value of the search is "
-                   "computed (with 19, the smallest p-value is 0.05)")
-      ->check(whole_between(0, 100'000))
-      ->capture_default_str();
+      "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)"));
+  unused_for_a_change.push_back(
+      command
+          ->add_option(
+              "--nulls", options->diagnosis.null_campaigns,
+              "Number of simulated data sets without any cause, from which the p-value of the search is "
+              "computed (with 19, the smallest p-value is 0.05)")
+          ->check(whole_between(0, 100'000))
+          ->capture_default_str());
   add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
-  command->add_flag("--propose", options->consequences.experiment.always,
-                    "Propose an experiment even if no alternative cause remains");
-  command
-      ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "Highest pressure of the proposed experiment [the highest pressure in the logs]")
-      ->check(positive_number());
+  unused_for_a_change.push_back(
+      command->add_flag("--propose", options->consequences.experiment.always,
+                        "Propose an experiment even if no alternative cause remains"));
+  unused_for_a_change.push_back(
+      command
+          ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
+                       "Highest pressure of the proposed experiment [the highest pressure in the logs]")
+          ->check(positive_number()));
+  for (CLI::Option* const option : unused_for_a_change) option->excludes("--healthy")->excludes("--baseline");
   command
       ->add_option("--slew-kpa-per-s", options->slew_kpa_per_s,
                    "Slew rate of the rig; limits the proposed experiment")

@@ -13,6 +13,7 @@
 #include "tools/command_line/command.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/figures/figure_files.h"
+#include "tools/investigation/diagnosis_folder.h"
 
 namespace softgrip::tools {
 namespace {
@@ -86,6 +87,7 @@ ExitCode run_change(ChangeQuestion question) {
                                                 {"healthy", sources_of(question.healthy)},
                                                 {"data", sources_of(question.later)}});
   const std::string text = result::json_text(fields);
+  remove_results_of_a_model(question.out);
   const sysid::Page page = sysid::change_page(*diagnosis, question.healthy, question.later, question.given);
   if (const auto written = write_report(question.out, {{"diagnosis.json", text}}, page, question.figures);
       !written)

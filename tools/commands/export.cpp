@@ -84,7 +84,7 @@ ExitCode export_c(const ExportOptions& options) {
                                       {"function", source->name + "_step"},
                                       {"inverse", source->no_inverse.empty()},
                                       {"no_inverse", source->no_inverse}};
-    std::fprintf(stream, "%s\n", json.dump().c_str());
+    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return ExitCode::done;
   }
   if (!source->no_inverse.empty()) std::fprintf(stream, "no inverse: %s\n", source->no_inverse.c_str());

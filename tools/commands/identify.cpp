@@ -158,6 +158,7 @@ ExitCode run(const IdentifyOptions& chosen, const std::vector<std::string>& call
     question.validation = std::move(*read);
   }
   question.options.record = options.logs.record_options();
+  if (const auto code = prepare_report(options.out, options.figures)) return *code;
   const auto all = identified(std::move(question));
   if (!all) return fail(ExitCode::input_refused, all.error());
   const sysid::Identification& result = all->result;
@@ -192,7 +193,9 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
   command.add_option("--starts", fit.starts, "Number of start points of the search")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command.add_option("--seed", fit.seed, "Seed of the start points")->capture_default_str();
+  command.add_option("--seed", fit.seed, "Seed of the start points")
+      ->check(seed_number())
+      ->capture_default_str();
   command
       .add_option("--exponents", fit.exponents, "Exponents of the hysteresis that are fitted and compared")
       ->check(CLI::Range(1, 4));

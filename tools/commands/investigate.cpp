@@ -64,7 +64,7 @@ CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
   scales.largest_kpa = sysid::largest_command_kpa(logs);
   double highest_mm = 0;
   for (const sysid::Log& log : logs) {
-    for (const double y : log.displacement_mm) highest_mm = std::max(highest_mm, y);
+    for (const double y : log.displacement_mm) highest_mm = std::max(highest_mm, std::abs(y));
     scales.pressure_recorded |= !log.pressure_kpa.empty();
   }
   scales.interval_s = sysid::sampling_of(logs.front()).median_interval_s;
@@ -217,6 +217,10 @@ ExitCode run(const InvestigateOptions& options) {
   const auto logs = read_logs(options.data, options.logs, unit_of_rigs());
   if (!logs) return logs.error();
   const CampaignScales scales = scales_of(*logs);
+  if (!(scales.largest_kpa > 0))
+    return fail(
+        ExitCode::input_refused,
+        "the logs contain no pressure above 0, but experiments are designed only for positive pressures");
   auto ground = playground_of(options, scales);
   if (!ground) return ground.error();
 

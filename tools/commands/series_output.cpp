@@ -5,7 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <map>
+#include <set>
 #include <utility>
 
 #include "base/files.h"
@@ -60,7 +60,7 @@ std::string series_csv(const LogSeries& series) {
   return text;
 }
 
-std::string series_path(std::string_view log_name) {
+std::string series_folder(std::string_view log_name) {
   constexpr std::string_view kept = "-_. ()";
   std::string folder;
   for (const char c : log_name) {
@@ -69,7 +69,7 @@ std::string series_path(std::string_view log_name) {
     folder += plain ? c : '_';
   }
   const bool only_dots = folder.find_first_not_of('.') == std::string::npos;
-  return (only_dots ? "log" : folder) + "/series.csv";
+  return only_dots ? "log" : folder;
 }
 
 std::vector<LogSeries> series_of(const std::vector<sysid::Log>& logs,
@@ -121,6 +121,14 @@ std::optional<ExitCode> refuse_report(const std::string& out, const std::string&
   return std::nullopt;
 }
 
+std::optional<ExitCode> prepare_report(const std::string& out, const std::string& figures) {
+  for (const std::string& folder : {out, figures}) {
+    if (folder.empty()) continue;
+    if (const auto ready = prepare_folder(folder); !ready) return fail(ExitCode::io, ready.error());
+  }
+  return std::nullopt;
+}
+
 void add_figures_option(CLI::App& command, std::string& folder) {
   command.add_option("--figures", folder,
                      "Folder for each figure of the report: SVG, PDF, and its data as CSV");
@@ -128,13 +136,11 @@ void add_figures_option(CLI::App& command, std::string& folder) {
 
 tl::expected<void, std::string> write_series(const std::string& folder,
                                              const std::vector<LogSeries>& series) {
-  std::map<std::string, int> seen;
+  std::set<std::string> used;
   for (const LogSeries& one : series) {
     // A log may be an input twice: for the fit and for the prediction. The second series of this log needs a
     // different folder.
-    const std::string plain = series_path(one.name);
-    const int count = ++seen[plain];
-    const std::string name = count == 1 ? plain : series_path(one.name + " (" + std::to_string(count) + ")");
+    const std::string name = sysid::unique_name(series_folder(one.name), used) + "/series.csv";
     const std::string path = (std::filesystem::path(folder) / name).string();
     if (auto written = write_file(path, series_csv(one)); !written) return written;
   }

@@ -53,10 +53,9 @@ struct LogSeries {
 /// Returns the series as CSV text with a header line.
 [[nodiscard]] std::string series_csv(const LogSeries& series);
 
-/// Returns the path of the series file of a log, relative to the output folder of a command:
-/// "LOG/series.csv". LOG is the name of the log, in which '_' replaces every character except letters, digits
-/// and "-_. ()".
-[[nodiscard]] std::string series_path(std::string_view log_name);
+/// Returns the folder of the series file of a log, relative to the output folder of a command. It is the name
+/// of the log, in which '_' replaces every character except letters, digits and "-_. ()".
+[[nodiscard]] std::string series_folder(std::string_view log_name);
 
 /// Returns the measured and predicted series of logs. `scores` contains the predictions, one element for each
 /// log.
@@ -81,6 +80,10 @@ struct LogSeries {
 [[nodiscard]] std::optional<ExitCode> refuse_report(const std::string& out, const std::string& figures,
                                                     std::vector<std::string> names,
                                                     const std::vector<std::string>& inputs);
+
+/// Creates the output folders of a report before its computation, so that the result of a long computation is
+/// not lost. `figures` may be empty.
+[[nodiscard]] std::optional<ExitCode> prepare_report(const std::string& out, const std::string& figures);
 
 /// Adds --figures DIR to a command that writes a report. write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);

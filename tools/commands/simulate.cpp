@@ -79,7 +79,7 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
     json["span_mm"] = span_mm;
     json["noise_mm"] = options.settings.noise_mm;
     json["seed"] = options.settings.seed;
-    std::fprintf(stream, "%s\n", json.dump().c_str());
+    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
   std::fprintf(stream, "%s, response to %s: %zu samples, %s s, span %s %s, noise %s %s, seed %s -> %s\n",
@@ -118,7 +118,9 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
                    "Standard deviation of white noise on the reading, in the unit of the model's output")
       ->capture_default_str()
       ->check(number_between(0, 1000));
-  command->add_option("--seed", options->settings.seed, "Seed of all noise")->capture_default_str();
+  command->add_option("--seed", options->settings.seed, "Seed of all noise")
+      ->check(seed_number())
+      ->capture_default_str();
   command->add_option("--rate-hz", options->rate_hz, "Samples per second of a SIGNAL [100]")
       ->check(number_between(0.1, 100000));
   command->add_option("--channel", options->channel, "Channel to use from a log with several channels");

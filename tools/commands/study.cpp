@@ -65,7 +65,9 @@ void add_published(CLI::App& study, ExitCode& outcome) {
       "published",
       "Show that the published hysteresis parameters absorb a latency that the model does not contain");
   add_output(*command, options->output);
-  command->add_option("--seed", options->study.seed, "Seed of noise and start points")->capture_default_str();
+  command->add_option("--seed", options->study.seed, "Seed of noise and start points")
+      ->check(seed_number())
+      ->capture_default_str();
   command->add_option("--starts", options->study.starts, "Number of start points of each identification")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -89,6 +91,7 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command->add_option("--seed", options->study.seed, "Seed of fingers, noise and logs")
+      ->check(seed_number())
       ->capture_default_str();
   command->add_option("--frequencies-hz", options->study.frequencies_hz, "Frequencies of the references")
       ->check(number_between(0.01, 2.0))

@@ -44,8 +44,10 @@ std::vector<Column> columns_of(const SignalGroup& group, std::vector<std::string
       left_out.push_back(signal.name);
       continue;
     }
-    std::string name = matlab_name(signal.name);
-    while (!used.insert(name).second) name = matlab_name(name.substr(0, 60) + "_2");
+    const std::string plain = matlab_name(signal.name);
+    std::string name = plain;
+    for (int count = 2; !used.insert(name).second; ++count)
+      name = matlab_name(plain.substr(0, 58) + "_" + std::to_string(count));
     columns.push_back({std::move(name), &signal.values});
   }
   return columns;

@@ -62,7 +62,9 @@ bool take_as_it_is(Job& job) {
   job.result.log = std::move(*log);
   job.result.account = job.table.account;
   job.result.account.used = job.result.log.size();
-  job.result.notes.emplace_back("this file is already a log: copied unchanged");
+  const bool corrected = std::ranges::any_of(job.result.log.notes, &sysid::LogNote::corrects);
+  job.result.notes.emplace_back(corrected ? "this file is already a log: copied with these corrections"
+                                          : "this file is already a log: copied unchanged");
   job.warnings = job.table.warnings;
   job.is_log = true;
   return true;

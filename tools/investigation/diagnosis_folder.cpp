@@ -64,6 +64,15 @@ std::vector<std::string> diagnosis_files() {
   return {"diagnosis.json", "model.yaml", sysid::experiment_file, feedforward_file};
 }
 
+void remove_results_of_a_model(const std::string& folder) {
+  const std::filesystem::path out(folder);
+  std::error_code ignored;
+  if (!std::filesystem::exists(out / "diagnosis.json", ignored)) return;
+  for (const std::string& name : diagnosis_files()) {
+    if (name != "diagnosis.json") std::filesystem::remove(out / name, ignored);
+  }
+}
+
 tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                               const sysid::Diagnosis& diagnosis,
                                                               const DiagnosisSource& source,

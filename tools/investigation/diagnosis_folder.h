@@ -36,6 +36,9 @@ struct DiagnosisSource {
   std::vector<std::string> call;  ///< command line that started the diagnosis; empty: no command started it
 };
 
+/// Removes the files of an earlier write_diagnosis_folder() that do not belong to a diagnosis of a change. If
+/// the folder has no diagnosis.json, its files belong to the user, and none is removed.
+void remove_results_of_a_model(const std::string& folder);
 /// Returns the names of the files that write_diagnosis_folder() may replace or remove. It never replaces an
 /// existing gauge_positions.csv, so this file is not in the list.
 [[nodiscard]] std::vector<std::string> diagnosis_files();

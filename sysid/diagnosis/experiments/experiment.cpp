@@ -282,7 +282,8 @@ class Designer {
         furthest = std::max(furthest, judged.separations[p].sigma);
       const Contest& contest = contests_[pairs_[p].contest];
       const AdviceFacts facts{options_.pressure_recorded, data_.scales.has_temperature,
-                              furthest >= separation_needed_sigma, d_.gauge.has_value()};
+                              furthest >= separation_needed_sigma, d_.gauge.has_value(),
+                              !options_.limits || options_.limits->pressure_max_kpa > 0};
       if (asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
         for (const std::string& id : {contest.ids[pairs_[p].one], contest.ids[pairs_[p].other]}) {
           if (std::find(by_gauge.begin(), by_gauge.end(), id) == by_gauge.end()) by_gauge.push_back(id);

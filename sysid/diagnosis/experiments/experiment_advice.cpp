@@ -60,7 +60,12 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   }
   if (facts.separable) return advice;
   std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
-  if (instead.empty() && advice.empty()) {
+  if (instead.empty() && advice.empty() && !facts.may_be_pressurised) {
+    instead =
+        "No experiment was designed to separate " + names +
+        ", because the logs contain no pressure above 0. softgrip designs experiments only for positive "
+        "pressures.";
+  } else if (instead.empty() && advice.empty()) {
     instead = "No waveform in softgrip's list of experiments separates " + names +
               " within the limits of the rig. A separation requires less sensor noise or a higher pressure.";
   }

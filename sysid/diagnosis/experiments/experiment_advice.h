@@ -10,8 +10,9 @@ namespace softgrip::sysid {
 struct AdviceFacts {
   bool pressure_recorded = false;  ///< true: the logs have a pressure_kpa column
   bool temperature_varies = false;
-  bool separable = false;   ///< true: a waveform separates the two causes
-  bool gauge_made = false;  ///< true: the sensor was already checked against a gauge
+  bool separable = false;          ///< true: a waveform separates the two causes
+  bool gauge_made = false;         ///< true: the sensor was already checked against a gauge
+  bool may_be_pressurised = true;  ///< false: neither the logs nor the limits contain a pressure above 0
 };
 
 /// Returns advice on how to separate the causes with the ids `one` and `other`. Each element consists of one

@@ -114,6 +114,19 @@ TEST_F(FoundRuns, UnfinishedAndNonSequenceRunsAreSkipped) {
   EXPECT_NE(found.skipped[1].why.find("not belong to a single sequence"), std::string::npos);
 }
 
+TEST_F(FoundRuns, ASecondRecordingWithTheSameNameIsSkippedWithAReason) {
+  (void)run("one/grip", "");
+  (void)run("two/grip", "");
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const std::string one = (folder / "one").string(), two = (folder / "two").string();
+  const RunScores found =
+      score_runs(find_runs({one, two, one + "/grip"}), [&](const std::string&) { return &base; }, {});
+  EXPECT_EQ(found.runs.size(), 1U);
+  ASSERT_EQ(found.skipped.size(), 1U) << "the same recording twice is no second recording";
+  EXPECT_EQ(found.skipped[0].run, "grip");
+  EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + two + "/grip");
+}
+
 TEST_F(FoundRuns, MissingRecordingIsSkippedWithAReason) {
   const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
   const std::string missing = (folder / "missing").string();

@@ -1,5 +1,6 @@
 // Tests the noise model, the quantiles, the bounded least squares and the scores of a model.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <span>
@@ -234,6 +235,18 @@ TEST(Score, ErrorIsInfiniteIfThePredictionIsNotFinite) {
     EXPECT_NE(verdict_of(validation).find("a predicted value is not finite"), std::string::npos)
         << verdict_of(validation);
   }
+}
+
+TEST(Score, ACycleWithoutReadingsHasNoError) {
+  const model::Model model = loaded("bench_twin");
+  Log log = simulated(model, model::SignalName::tp1, 50, 0.05, 1);
+  Record record = make_records({log}, {}).front();
+  const std::vector<std::size_t> cycles = cycle_starts(record);
+  ASSERT_GT(cycles.size(), 1U);
+  std::fill_n(record.reading_mm.begin(), cycles[1], std::nan(""));
+  const Score score = score_of(model, record, StartState{}, record.reading_mm);
+  EXPECT_TRUE(std::isnan(score.first_cycle_rmse_mm)) << score.first_cycle_rmse_mm;
+  EXPECT_GT(score.settled_rmse_mm, 0);
 }
 
 TEST(Score, ErrorIsInfiniteIfASinglePredictionIsNotFinite) {

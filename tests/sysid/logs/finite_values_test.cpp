@@ -22,6 +22,15 @@ TEST(FiniteValues, KeepTheIndicesOfTheirSamples) {
   EXPECT_TRUE(finite_values(Column{nan}).values.empty());
 }
 
+TEST(FillMissing, InterpolatesBetweenNeighboursAndRepeatsTheNearestValueAtTheEnds) {
+  Column column{nan, 2, nan, nan, 5, nan};
+  fill_missing(column);
+  EXPECT_EQ(column, (Column{2, 2, 3, 4, 5, 5}));
+  Column none{nan, nan};
+  fill_missing(none);
+  EXPECT_EQ(finite_count(none), 0U);
+}
+
 TEST(FiniteValues, ExtentIsFromTheLowestToTheHighestValue) {
   const auto extent = extent_of(Column{3, -1, 7, 0.5});
   ASSERT_TRUE(extent);

@@ -9,7 +9,9 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -198,6 +200,30 @@ TEST(Log, FormattedLogIsParsedWithoutLoss) {
   EXPECT_EQ(back->others, log.others);
   EXPECT_TRUE(std::isnan(back->displacement_mm[10]));
   EXPECT_EQ(format_log(*back), format_log(log));
+}
+
+TEST(Log, AnOptionalColumnWithFewerThanTwoValuesIsMissing) {
+  for (const std::size_t values : {0U, 1U, 2U}) {
+    Log log = good_log();
+    log.pressure_kpa.assign(100, std::nan(""));
+    for (std::size_t i = 0; i < values; ++i) log.pressure_kpa[40 * (i + 1)] = 3;
+    Problems problems;
+    const auto back = parse_log("log.csv", format_log(log), problems);
+    ASSERT_TRUE(back) << problems.format();
+    EXPECT_EQ(back->pressure_kpa.empty(), values < 2);
+    const bool noted = std::ranges::any_of(back->notes, [](const LogNote& note) {
+      return note.corrects && note.text.find("pressure_kpa has fewer than two values") != std::string::npos;
+    });
+    EXPECT_EQ(noted, values < 2);
+  }
+}
+
+TEST(UniqueName, DiffersFromAllEarlierNames) {
+  std::set<std::string> used;
+  for (const auto& [name, unique] :
+       {std::pair("run", "run"), std::pair("run (2)", "run (2)"), std::pair("run", "run (3)"),
+        std::pair("run", "run (4)"), std::pair("run (2)", "run (2) (2)")})
+    EXPECT_EQ(unique_name(name, used), unique);
 }
 
 /// Returns a log text. The column of the readings has the name `name`.

@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "model/blocks/thermal_gain.h"
 #include "model/file/model_file.h"
+#include "model/named.h"
 
 namespace softgrip::sysid::simulated_log_test {
 namespace {
@@ -97,6 +99,23 @@ TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
     ASSERT_NEAR(irregular.displacement_mm[k], regular.displacement_mm[i], 1e-3)
         << "at " << regular.time_s[i] << " s";
   }
+}
+
+TEST(Simulate, FillsGapsOfSupplyAndTemperature) {
+  model::Model model = twin();
+  model = model::with_block(model, model::block_of<model::ThermalGain>({{"gain_per_c", 0.02}}));
+  Log whole = sampled_signal(model::SignalName::tp1, 20);
+  whole.temperature_c.assign(whole.size(), 35);
+  Log gaps = whole, none = whole, absent = whole;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (i % 10 != 3) gaps.temperature_c[i] = std::nan("");
+    none.temperature_c[i] = std::nan("");
+  }
+  absent.temperature_c.clear();
+  for (Log* log : {&whole, &gaps, &none, &absent}) simulate(model, {}, *log);
+  EXPECT_EQ(gaps.displacement_mm, whole.displacement_mm);
+  EXPECT_EQ(none.displacement_mm, absent.displacement_mm);
+  EXPECT_NE(none.displacement_mm, whole.displacement_mm);
 }
 
 TEST(Simulate, StartsAtRestAtTheFirstCommand) {

@@ -12,8 +12,8 @@ TEST(SeriesOutput, WritesTwoFoldersForALogGivenTwice) {
   LogSeries series;
   series.name = "tp1";
   ASSERT_TRUE(write_series(folder.string(), {series, series}));
-  EXPECT_TRUE(std::filesystem::exists(folder / "tp1/series.csv"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "tp1 (2)/series.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "tp1"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "tp1 (2)"));
   std::filesystem::remove_all(folder);
 }
 
@@ -53,11 +53,10 @@ TEST(Series, AveragedReadingsUseTheSamplesOfTheRecord) {
 }
 
 TEST(Series, PathStaysWithinTheOutputFolder) {
-  EXPECT_EQ(series_path("tp1"), "tp1/series.csv");
-  EXPECT_EQ(series_path("2026-11-20T04-21-40Z_pick/left (2)"),
-            "2026-11-20T04-21-40Z_pick_left (2)/series.csv");
-  EXPECT_EQ(series_path(".."), "log/series.csv");
-  EXPECT_EQ(series_path("../../etc"), ".._.._etc/series.csv");
+  EXPECT_EQ(series_folder("tp1"), "tp1");
+  EXPECT_EQ(series_folder("2026-11-20T04-21-40Z_pick/left (2)"), "2026-11-20T04-21-40Z_pick_left (2)");
+  EXPECT_EQ(series_folder(".."), "log");
+  EXPECT_EQ(series_folder("../../etc"), ".._.._etc");
 }
 
 }  // namespace
