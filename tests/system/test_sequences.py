@@ -76,7 +76,7 @@ class WithoutADaemon(bench.BenchTest):
     def test_an_existing_recording_ends_run_before_any_motion(self):
         self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r")
         before = (self.folder / "r/run.json").read_text()
-        again = self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r", expect=2)
+        again = self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r", expect=5)
         self.assertIn("r/run.csv exists already; a recording is never overwritten", again.stderr)
         self.assertEqual(again.stdout, "")
         self.assertEqual((self.folder / "r/run.json").read_text(), before)
