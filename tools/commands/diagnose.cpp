@@ -197,7 +197,7 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs, unit_of(*model));
   if (!logs) return logs.error();
-  if (const auto code = prepare_report(options.out, options.figures)) return *code;
+  if (const auto code = refuse_unwritable(options.out, options.figures)) return *code;
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {

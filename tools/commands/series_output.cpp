@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "base/files.h"
@@ -121,10 +122,17 @@ std::optional<ExitCode> refuse_report(const std::string& out, const std::string&
   return std::nullopt;
 }
 
-std::optional<ExitCode> prepare_report(const std::string& out, const std::string& figures) {
+std::optional<ExitCode> refuse_unwritable(const std::string& out, const std::string& figures) {
+  namespace fs = std::filesystem;
   for (const std::string& folder : {out, figures}) {
     if (folder.empty()) continue;
-    if (const auto ready = prepare_folder(folder); !ready) return fail(ExitCode::io, ready.error());
+    std::error_code ignored;
+    std::vector<fs::path> missing;
+    for (fs::path path = folder; !path.empty() && !fs::exists(path, ignored); path = path.parent_path())
+      missing.push_back(path);
+    const auto ready = prepare_folder(folder);
+    for (const fs::path& path : missing) fs::remove(path, ignored);
+    if (!ready) return fail(ExitCode::io, ready.error());
   }
   return std::nullopt;
 }

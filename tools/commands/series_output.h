@@ -81,9 +81,9 @@ struct LogSeries {
                                                     std::vector<std::string> names,
                                                     const std::vector<std::string>& inputs);
 
-/// Creates the output folders of a report before its computation, so that the result of a long computation is
-/// not lost. `figures` may be empty.
-[[nodiscard]] std::optional<ExitCode> prepare_report(const std::string& out, const std::string& figures);
+/// Returns an exit code if an output folder of a report cannot be created or written. A command checks this
+/// before its computation, so that the result is not lost. No folder remains. `figures` may be empty.
+[[nodiscard]] std::optional<ExitCode> refuse_unwritable(const std::string& out, const std::string& figures);
 
 /// Adds --figures DIR to a command that writes a report. write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);

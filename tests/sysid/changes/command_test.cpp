@@ -97,7 +97,7 @@ TEST_F(ChangeCommand, ModifiedOrMissingBaselineIsRejected) {
   write("base/healthy_1.csv", read("h2.csv"));
   EXPECT_EQ(run("diagnose --baseline base --data later1.csv --out out"), 3);
   EXPECT_NE(read("err.txt").find("healthy_1.csv"), std::string::npos) << read("err.txt");
-  EXPECT_EQ(run("diagnose --baseline nowhere --data later1.csv --out out"), 3);
+  EXPECT_EQ(run("diagnose --baseline nowhere --data later1.csv --out out"), 4);
   EXPECT_EQ(run("diagnose --data later1.csv --out out"), 2);
 }
 
