@@ -162,8 +162,8 @@ class StartSearch {
 
   [[nodiscard]] Trial best_of(const std::vector<StartState>& starts, const Trust& trust) const {
     Trial best = with_creep(starts.front(), trust);
-    for (const StartState& start : starts) {
-      Trial trial = with_creep(start, trust);
+    for (std::size_t i = 1; i < starts.size(); ++i) {
+      Trial trial = with_creep(starts[i], trust);
       if (trial.cost < best.cost) best = std::move(trial);
     }
     return best;

@@ -67,6 +67,17 @@ class Offline(bench.BenchTest):
                 self.assertIn("'nan' is not a number above 0", self.softgrip(command, *files, option, "nan", expect=2).stderr)
         self.assertIn("'nan'", self.softgrip("investigate", *files, "--budget-minutes", "nan", expect=2).stderr)
 
+    def test_investigate_refuses_logs_that_contain_only_vacuum(self):
+        self.simulate("--input", "tp1", "--out", "log.csv")
+        header, *rows = (self.folder / "log.csv").read_text().splitlines()
+        names = header.split(",")
+        self.assertEqual(names[:3], ["time_s", "pressure_command_kpa", "displacement_mm"])
+        negative = [",".join([t, str(-float(p)), str(-float(y)), *rest]) for t, p, y, *rest in (r.split(",") for r in rows)]
+        self.write("vacuum.csv", "\n".join([header, *negative]) + "\n")
+        done = self.softgrip("investigate", "--model", "config/models/bench_twin.yaml", "--data", "vacuum.csv", "--out", "result",
+                             "--rig-command", "true", "--yes", expect=3)
+        self.assertIn("the logs contain no pressure above 0", done.stderr)
+
     def test_check_reports_all_problems_of_a_file(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
         # The sequence of the vacuum rig is valid for the vacuum rig only.

@@ -105,6 +105,15 @@ TEST(EstimatedStart, IgnoresReadingsAfterTheInitialInterval) {
   }
 }
 
+/// No start state then has a finite prediction.
+TEST(EstimatedStart, AnUnknownDriveHasAStartState) {
+  const model::Model finger = play_finger();
+  Record record = cut(finger, SignalName::tp1, 300);
+  record.start_unknown = true;
+  std::fill(record.drive_kpa.begin(), record.drive_kpa.end(), std::nan(""));
+  EXPECT_EQ(estimated_start(finger, record).unsettled_mm.size(), 2U);
+}
+
 TEST(EstimatedStart, ShiftOfAllReadingsChangesOnlyTheOffset) {
   for (const model::Model& finger : fingers()) {
     for (const std::size_t first : {0U, 700U, 1100U}) {

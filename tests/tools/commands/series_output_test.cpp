@@ -12,8 +12,8 @@ TEST(SeriesOutput, WritesTwoFoldersForALogGivenTwice) {
   LogSeries series;
   series.name = "tp1";
   ASSERT_TRUE(write_series(folder.string(), {series, series}));
-  EXPECT_TRUE(std::filesystem::exists(folder / "tp1"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "tp1 (2)"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "tp1/series.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "tp1 (2)/series.csv"));
   std::filesystem::remove_all(folder);
 }
 

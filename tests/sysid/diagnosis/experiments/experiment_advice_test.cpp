@@ -35,6 +35,14 @@ TEST(Advice, IsEmptyForSeparableCausesUnlessPressureIsMissing) {
   EXPECT_TRUE(advice_for("valve_lag", "sensor_lag", {.pressure_recorded = true, .separable = true}).empty());
 }
 
+TEST(Advice, StatesThatAVacuumPermitsNoExperiment) {
+  const auto usual = advice_for("inertia", "rate_dependent_hysteresis", {});
+  EXPECT_TRUE(says(usual, "a higher pressure")) << usual.front();
+  const auto vacuum = advice_for("inertia", "rate_dependent_hysteresis", {.may_be_pressurised = false});
+  EXPECT_TRUE(says(vacuum, "the logs contain no pressure above 0")) << vacuum.front();
+  EXPECT_FALSE(says(vacuum, "a higher pressure"));
+}
+
 TEST(Advice, DependsOnThePairOfCausesAndTheData) {
   EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "Change the load"));
   EXPECT_TRUE(
