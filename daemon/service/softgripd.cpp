@@ -12,7 +12,7 @@
 
 #include "base/exit_code.h"
 #include "base/files.h"
-#include "base/numbers.h"
+#include "base/option_checks.h"
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"
@@ -39,19 +39,8 @@ struct Arguments {
   std::optional<double> duration_s;
 };
 
-/// Accepts a number of seconds for which the clock can represent the end of the run. CLI::Range accepts NaN.
-CLI::Validator duration() {
-  constexpr double longest_s = 1e8;
-  const auto check = [=](const std::string& text) {
-    const auto value = to_number(text);
-    return value && *value > 0 && *value <= longest_s ? std::string()
-                                                      : fmt::format(
-                                                            "'{}' is not a number above 0 and up to "
-                                                            "{:g}",
-                                                            text, longest_s);
-  };
-  return CLI::Validator(check, "");
-}
+/// Limits of --duration-s. The clock cannot represent a time after some 290 years.
+constexpr double shortest_run_s = 0.001, longest_run_s = 1e8;
 
 void declare(CLI::App& program, Arguments& arguments) {
   program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
@@ -70,14 +59,15 @@ void declare(CLI::App& program, Arguments& arguments) {
                    "run as fast as possible on a simulated board, with identical results in every run; "
                    "requires --sequence or --duration-s");
   program.add_option("--seed", arguments.seed, "seed of a simulated board; overrides the rig file")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(seed_number());
   program
       .add_option("--sequence", arguments.sequence,
                   "start this sequence when the rig is idle, and exit after the sequence")
       ->type_name("FILE");
   program.add_option("--duration-s", arguments.duration_s, "exit after S seconds")
       ->type_name("S")
-      ->check(duration());
+      ->check(number_between(shortest_run_s, longest_run_s));
   program.add_option("--record", arguments.record, "write one recording of the whole run into this folder")
       ->type_name("DIR");
   program

@@ -81,7 +81,9 @@ void add_options(CLI::App& program, Options& options) {
                   "Standard deviation of the noise of the pressure monitor [kPa]")
       ->capture_default_str()
       ->check(number_between(0, 1000));
-  program.add_option("--seed", options.seed, "Seed of all noise")->capture_default_str();
+  program.add_option("--seed", options.seed, "Seed of all noise")
+      ->check(seed_number())
+      ->capture_default_str();
   program.add_option("--truth", options.truth, "Write the true states to this CSV file");
   program
       .add_option("--truth-rate-hz", options.truth_rate_hz,

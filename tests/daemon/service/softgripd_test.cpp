@@ -254,6 +254,8 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
       << "in virtual time, softgripd requires an end of the run";
   for (const char* duration_s : {"nan", "1e10", "0", "-1", "long"})
     EXPECT_EQ(code({"--config", rig, "--virtual-time", "--duration-s", duration_s}), 2) << duration_s;
+  for (const char* seed : {"-1", "18446744073709551616"})
+    EXPECT_EQ(code({"--config", rig, "--virtual-time", "--duration-s", "0.1", "--seed", seed}), 2) << seed;
   const std::vector<std::string> recorded{"--config", rig,        "--virtual-time",       "--duration-s",
                                           "0.1",      "--record", folder_.path() + "/rec"};
   EXPECT_EQ(code(recorded), 0);
