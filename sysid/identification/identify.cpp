@@ -241,8 +241,8 @@ std::vector<std::string> start_warnings(const Identification& result) {
         record.name + " does not start from rest, so the initial state of this log was estimated";
     if (!(predicted_mm <= limits::comparable_ratio * fitted_mm)) {
       sentence +=
-          " from all its readings. validate and diagnose estimate it from the first readings of a log. "
-          "This leads to an RMSE of " +
+          " from all its readings. From the first readings alone, which `softgrip validate` and `softgrip "
+          "diagnose` use, the RMSE is " +
           significant(predicted_mm, 3) + " instead of " + significant(fitted_mm, 3) + " " +
           std::string(model::name_of(record.output_unit)) + ". Record a log that starts from rest";
     }

@@ -140,13 +140,14 @@ struct Identification {
 [[nodiscard]] tl::expected<Identification, std::string> identify(const std::vector<Log>& logs,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});
-/// Returns a warning for each log whose initial state was estimated. If estimated_start(), which `validate`
-/// and `diagnose` use, leads to a clearly larger error than the fitted start state, the warning states both
-/// errors.
-[[nodiscard]] std::vector<std::string> start_warnings(const Identification& result);
 /// Fits the model to records. A reading that is NaN is held out.
 [[nodiscard]] tl::expected<Identification, std::string> identify(std::vector<Record> records,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});
+
+/// Returns a warning for each log whose initial state was estimated. If estimated_start(), which `validate`
+/// and `diagnose` use, leads to a clearly larger error than the fitted start state, the warning states both
+/// errors.
+[[nodiscard]] std::vector<std::string> start_warnings(const Identification& result);
 
 }  // namespace softgrip::sysid

@@ -89,16 +89,6 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
   return all;
 }
 
-/// Refuses a number of prepared answers that does not match the number of visits.
-std::optional<ExitCode> refuse_number_of_answers(const std::string& option,
-                                                 const std::vector<std::string>& answers,
-                                                 std::size_t repeats) {
-  if (answers.empty() || answers.size() == 2 || answers.size() == 2 * repeats) return std::nullopt;
-  return fail(ExitCode::usage, option + " has " + std::to_string(answers.size()) + " readings, but " +
-                                   (repeats == 1 ? "2" : "2 or " + std::to_string(2 * repeats)) +
-                                   " are necessary");
-}
-
 /// Returns an exit code if a daemon uses the board of the rig, else nullopt.
 std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, const rig::RigFile& rig) {
   if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
@@ -206,17 +196,19 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
     return tl::unexpected(fail(
         ExitCode::usage, "the calibration of valve and dead zone moves the finger, so it requires --move"));
   }
-  for (const auto* const answers : {&options.gauge_mm, &options.manometer_kpa}) {
+  for (const auto& [option, answers] :
+       {std::pair("--gauge-mm", &options.gauge_mm), std::pair("--manometer-kpa", &options.manometer_kpa)}) {
     for (const std::string& answer : *answers) {
       if (!calibrate::typed_number(answer)) {
         return tl::unexpected(fail(ExitCode::input_refused, "`" + answer + "` is not a number"));
       }
     }
+    const std::size_t count = answers->size(), visits = 2 * options.repeats;
+    if (count == 0 || count == 2 || count == visits) continue;
+    return tl::unexpected(
+        fail(ExitCode::usage, std::string(option) + " has " + std::to_string(count) + " readings, but " +
+                                  (visits == 2 ? "2" : "2 or " + std::to_string(visits)) + " are necessary"));
   }
-  if (const auto code = refuse_number_of_answers("--gauge-mm", options.gauge_mm, options.repeats))
-    return tl::unexpected(*code);
-  if (const auto code = refuse_number_of_answers("--manometer-kpa", options.manometer_kpa, options.repeats))
-    return tl::unexpected(*code);
   if (options.dead_zone && options.ramp_s < delays_per_ramp * rig.settings.faults.pressure_delay_s) {
     return tl::unexpected(
         fail(ExitCode::usage, "--ramp-s " + significant(options.ramp_s) + " is too short: state at least " +

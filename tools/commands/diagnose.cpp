@@ -197,7 +197,6 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs, unit_of(*model));
   if (!logs) return logs.error();
-  if (const auto code = refuse_unwritable(options.out, options.figures)) return *code;
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
@@ -259,28 +258,25 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
           "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html, and series.csv per log")
       ->required();
   add_figures_option(*command, options->figures);
-  std::vector<CLI::Option*> unused_for_a_change;
-  unused_for_a_change.push_back(command->add_option(
+  command->add_option(
       "--gauge", options->gauge,
-      "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)"));
-  unused_for_a_change.push_back(
-      command
-          ->add_option(
-              "--nulls", options->diagnosis.null_campaigns,
-              "Number of simulated data sets without any cause, from which the p-value of the search is "
-              "computed (with 19, the smallest p-value is 0.05)")
-          ->check(whole_between(0, 100'000))
-          ->capture_default_str());
+      "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)");
+  command
+      ->add_option("--nulls", options->diagnosis.null_campaigns,
+                   "Number of simulated data sets without any cause, from which the p-value of the search is "
+                   "computed (with 19, the smallest p-value is 0.05)")
+      ->check(whole_between(0, 100'000))
+      ->capture_default_str();
   add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
-  unused_for_a_change.push_back(
-      command->add_flag("--propose", options->consequences.experiment.always,
-                        "Propose an experiment even if no alternative cause remains"));
-  unused_for_a_change.push_back(
-      command
-          ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                       "Highest pressure of the proposed experiment [the highest pressure in the logs]")
-          ->check(positive_number()));
-  for (CLI::Option* const option : unused_for_a_change) option->excludes("--healthy")->excludes("--baseline");
+  command->add_flag("--propose", options->consequences.experiment.always,
+                    "Propose an experiment even if no alternative cause remains");
+  command
+      ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
+                   "Highest pressure of the proposed experiment [the highest pressure in the logs]")
+      ->check(positive_number());
+  // A diagnosis of a change does not use these options.
+  for (const char* const name : {"--gauge", "--nulls", "--propose", "--pressure-max-kpa"})
+    command->get_option(name)->excludes("--healthy")->excludes("--baseline");
   command
       ->add_option("--slew-kpa-per-s", options->slew_kpa_per_s,
                    "Slew rate of the rig; limits the proposed experiment")

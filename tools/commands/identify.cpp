@@ -158,7 +158,6 @@ ExitCode run(const IdentifyOptions& chosen, const std::vector<std::string>& call
     question.validation = std::move(*read);
   }
   question.options.record = options.logs.record_options();
-  if (const auto code = refuse_unwritable(options.out, options.figures)) return *code;
   const auto all = identified(std::move(question));
   if (!all) return fail(ExitCode::input_refused, all.error());
   const sysid::Identification& result = all->result;

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -22,6 +23,23 @@ namespace {
 
 std::string cell(double value) {
   return std::isfinite(value) ? shortest(value) : std::string();
+}
+
+/// Returns an exit code if one of the folders cannot be created or written. No folder remains. Names may be
+/// empty.
+std::optional<ExitCode> refuse_unwritable(std::initializer_list<std::string> folders) {
+  namespace fs = std::filesystem;
+  for (const std::string& folder : folders) {
+    if (folder.empty()) continue;
+    std::error_code ignored;
+    std::vector<fs::path> missing;
+    for (fs::path path = folder; !path.empty() && !fs::exists(path, ignored); path = path.parent_path())
+      missing.push_back(path);
+    const auto ready = prepare_folder(folder);
+    for (const fs::path& path : missing) fs::remove(path, ignored);
+    if (!ready) return fail(ExitCode::io, ready.error());
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -112,29 +130,14 @@ std::optional<ExitCode> refuse_report(const std::string& out, const std::string&
   std::vector<std::string> files = files_in(out, names);
   for (std::string& file : files_in(figures, {"figure-*"})) files.push_back(std::move(file));
   if (const auto code = refuse_overwriting(files, inputs)) return code;
-  if (out.empty()) return std::nullopt;
+  if (out.empty()) return refuse_unwritable({figures});
   for (const ReportKind& other : report_kinds) {
     const std::string path = (std::filesystem::path(out) / other.json).string();
     if (std::ranges::count(names, other.json) > 0 || !is_there(path)) continue;
     return fail(ExitCode::state_refused,
                 path + " already exists: its report.html would be replaced. Name another folder with --out");
   }
-  return std::nullopt;
-}
-
-std::optional<ExitCode> refuse_unwritable(const std::string& out, const std::string& figures) {
-  namespace fs = std::filesystem;
-  for (const std::string& folder : {out, figures}) {
-    if (folder.empty()) continue;
-    std::error_code ignored;
-    std::vector<fs::path> missing;
-    for (fs::path path = folder; !path.empty() && !fs::exists(path, ignored); path = path.parent_path())
-      missing.push_back(path);
-    const auto ready = prepare_folder(folder);
-    for (const fs::path& path : missing) fs::remove(path, ignored);
-    if (!ready) return fail(ExitCode::io, ready.error());
-  }
-  return std::nullopt;
+  return refuse_unwritable({out, figures});
 }
 
 void add_figures_option(CLI::App& command, std::string& folder) {

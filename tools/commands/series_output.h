@@ -72,18 +72,14 @@ struct LogSeries {
                                                const std::vector<sysid::Log>& logs);
 
 /// Checks the folders of --out and --figures before a command computes a report, its series and its figures.
-/// Prints a sentence and returns an exit code in two cases: a file of the report is an input, or cannot be
-/// written (refuse_overwriting()); or the folder of --out contains the result of another command
-/// (ExitCode::state_refused).
+/// Prints a sentence and returns an exit code in three cases: a file of the report is an input, or cannot be
+/// written (refuse_overwriting()); the folder of --out contains the result of another command
+/// (ExitCode::state_refused); or a folder cannot be created or written (ExitCode::io).
 /// @param names  patterns of the files that the command writes, in addition to the report and the series.
 /// They include the JSON file with the result of the command.
 [[nodiscard]] std::optional<ExitCode> refuse_report(const std::string& out, const std::string& figures,
                                                     std::vector<std::string> names,
                                                     const std::vector<std::string>& inputs);
-
-/// Returns an exit code if an output folder of a report cannot be created or written. A command checks this
-/// before its computation, so that the result is not lost. No folder remains. `figures` may be empty.
-[[nodiscard]] std::optional<ExitCode> refuse_unwritable(const std::string& out, const std::string& figures);
 
 /// Adds --figures DIR to a command that writes a report. write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);

@@ -225,7 +225,7 @@ TEST(StartWarnings, StateTheErrorThatValidateReports) {
     ASSERT_EQ(sentences.size(), 1U);
     const std::string& sentence = sentences.front();
     EXPECT_NE(sentence.find("the initial state of this log was estimated"), std::string::npos) << sentence;
-    EXPECT_EQ(sentence.find("RMSE of " + significant(validated_mm, 3)) != std::string::npos, ratio > 1.5)
+    EXPECT_EQ(sentence.find("the RMSE is " + significant(validated_mm, 3)) != std::string::npos, ratio > 1.5)
         << sentence;
   }
 }
