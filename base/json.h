@@ -1,7 +1,7 @@
 #pragma once
 // Reads members of JSON objects that come from other programs. A member may be missing or of an unexpected
 // type.
-// Parses JSON text that comes from other users and programs.
+// Parses JSON text that comes from other users and programs, and writes JSON text.
 
 #include <limits>
 #include <string>
@@ -47,6 +47,13 @@ template <class Json>
   static const Json none = Json::array();
   const Json& value = json_member(object, key);
   return value.is_array() ? value : none;
+}
+
+/// Returns a value as text. Bytes that are not UTF-8 are replaced, so that a name from a file system cannot
+/// prevent the output. A negative indent means one line.
+template <class Json>
+[[nodiscard]] std::string json_dump(const Json& value, int indent = -1) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 /// Largest depth of nested arrays and objects; parse_json() omits deeper values.

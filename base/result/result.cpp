@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/text.h"
 
@@ -95,7 +96,7 @@ Json json_of(const Value& value) {
 }
 
 std::string json_text(const Fields& fields) {
-  return json_of(fields).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_dump(json_of(fields), 2) + "\n";
 }
 
 }  // namespace softgrip::result

@@ -4,16 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
+
 namespace softgrip::daemon {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Replaces bytes that are not UTF-8 in file names and messages, so that the file remains readable.
-std::string dump(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
 
 Json json_of(const LoadedSequence& sequence, std::uint32_t request) {
   return {{"name", sequence.prepared.name},
@@ -77,7 +74,7 @@ std::string run_json(const Provenance& provenance, const RunStory& story) {
     if (event.kind == "fault_latched") json["faults"].push_back(event_json(event));
   }
   json["events_left_out"] = story.events_left_out;
-  return dump(json);
+  return json_dump(json, 1) + "\n";
 }
 
 }  // namespace softgrip::daemon

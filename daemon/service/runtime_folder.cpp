@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/json.h"
 #include "base/sha256.h"
 #include "base/text.h"
 #include "daemon/service/board_lock.h"
@@ -179,7 +180,7 @@ tl::expected<void, std::string> keep_rig(const rig::RigFile& rig) {
   for (const rig::InputFile& file : rig.inputs)
     kept["files"].push_back(
         {{"role", static_cast<int>(file.role)}, {"path", file.path}, {"text", file.text}});
-  return place->put(name_of(rig.path), kept.dump(-1, ' ', false, json::error_handler_t::replace));
+  return place->put(name_of(rig.path), json_dump(kept));
 }
 
 std::optional<rig::RigFile> kept_rig(const std::string& config) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/periodic_schedule.h"
 #include "control/elements/grip_result.h"
 #include "daemon/recording/csv_row.h"
@@ -271,7 +272,7 @@ Json statistics_json(const StatusSources& sources, const std::vector<EventCount>
 }
 
 std::string line_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_dump(json) + "\n";
 }
 
 Json under_pressure_json(const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot) {

@@ -118,7 +118,7 @@ std::string line_of(const ScoredRun& run) {
     line[std::string(sysid::health_number_infos[i].id)] = std::isfinite(value) ? Json(value) : Json(nullptr);
   }
   if (std::isfinite(run.temperature_c)) line["temperature_c"] = run.temperature_c;
-  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_dump(line) + "\n";
 }
 
 std::vector<std::string> find_runs(const std::vector<std::string>& paths) {

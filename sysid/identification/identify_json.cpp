@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "model/file/model_file.h"
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/log_report.h"
@@ -113,7 +114,7 @@ std::string identify_json(const IdentifyReport& report) {
   json["iterations"] = r.iterations;
   json["converged"] = r.converged;
   json["wall_s"] = r.wall_s;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_dump(json, 2) + "\n";
 }
 
 }  // namespace softgrip::sysid

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
 #include "sysid/fitting/start_estimate.h"
@@ -139,7 +140,7 @@ std::string validate_json(const Validation& v, const std::vector<Log>& logs) {
     json["offset_mm"][v.scores[i].name] = v.scores[i].start.offset_mm;
   }
   json["wall_s"] = v.wall_s;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_dump(json, 2) + "\n";
 }
 
 }  // namespace softgrip::sysid

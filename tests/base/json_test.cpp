@@ -46,6 +46,11 @@ TEST(ParseJson, PreservesKeyOrderAndThirtyLevels) {
   EXPECT_EQ(parse_json<Json>(nested(30)).dump(), nested(30));
 }
 
+TEST(JsonDump, ReplacesBytesThatAreNotUtf8) {
+  EXPECT_EQ(json_dump(Json{{"name", "l\xf6g"}}), "{\"name\":\"l\xef\xbf\xbdg\"}");
+  EXPECT_EQ(json_dump(Json{{"a", 1}}, 2), "{\n  \"a\": 1\n}");
+}
+
 TEST(ParseJson, InvalidJsonIsDiscarded) {
   for (const char* text : {"", "{", "[1,]", "{\"a\":1}}", "\xff"})
     EXPECT_TRUE(parse_json<Json>(text).is_discarded()) << text;

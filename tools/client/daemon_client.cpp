@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/net/listener.h"
 
 namespace softgrip::tools {
@@ -109,7 +110,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
 }
 
 void DaemonClient::send(const Json& request) {
-  const std::string line = request.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string line = json_dump(request) + "\n";
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t count = ::send(socket_.get(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;

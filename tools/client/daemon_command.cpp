@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/json.h"
 #include "document/problem.h"
 #include "rig/rig_file.h"
 #include "tools/command_line/input_files.h"
@@ -116,7 +117,7 @@ void add_ending_request(CLI::App& program, ExitCode& outcome, const std::string&
 }
 
 void print_json(const Json& json) {
-  std::printf("%s\n", json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+  std::printf("%s\n", json_dump(json).c_str());
   std::fflush(stdout);
 }
 

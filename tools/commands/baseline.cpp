@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/sha256.h"
 #include "base/version.h"
@@ -236,9 +237,7 @@ ExitCode checked_again(BaselineOptions options) {
   const auto check = checked(options, *runs, *model, holds);
   if (!check) return check.error();
   if (options.json) {
-    std::printf("%s\n", Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}
-                            .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                            .c_str());
+    std::printf("%s\n", json_dump(Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}, 2).c_str());
   } else {
     std::printf("Baseline in %s: the files of the baseline are unchanged. %s\n", folder.c_str(),
                 text_of_check(*check).c_str());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/json.h"
 #include "base/sha256.h"
 #include "daemon/service/signals.h"
 #include "model/file/model_file.h"
@@ -61,7 +62,7 @@ tl::expected<std::string, std::string> write_into(const std::string& folder, con
   if (contents.gauge)
     about["gauge"] = writer.write("gauge.csv", contents.gauge->bytes, contents.gauge->source);
   about["model"] = writer.write("model.yaml", model::to_yaml(contents.model));
-  std::string text = about.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  std::string text = json_dump(about, 2) + "\n";
   (void)writer.write("baseline.json", text);
   if (!writer.why().empty()) return Failure(writer.why());
   return text;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "tools/client/set_option.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
@@ -51,7 +52,7 @@ void print_report_json(const rig::CheckReport& report) {
   for (const auto& problem : report.problems.list()) json["problems"].push_back(to_json(problem, "error"));
   for (const auto& problem : report.problems.warnings())
     json["problems"].push_back(to_json(problem, "warning"));
-  std::printf("%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  std::printf("%s\n", json_dump(json).c_str());
 }
 
 void print_report_text(const rig::CheckReport& report) {

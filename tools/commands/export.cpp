@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/version.h"
 #include "tools/command_line/input_files.h"
@@ -57,7 +58,7 @@ void report(const ExportOptions& options, const std::string& format, const std::
   if (options.json) {
     const nlohmann::ordered_json json{{"out", options.out}, {"format", format},   {"groups", groups.size()},
                                       {"signals", signals}, {"samples", samples}, {"left_out", left_out}};
-    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(stream, "%s\n", json_dump(json).c_str());
     return;
   }
   for (const std::string& name : left_out)
@@ -84,7 +85,7 @@ ExitCode export_c(const ExportOptions& options) {
                                       {"function", source->name + "_step"},
                                       {"inverse", source->no_inverse.empty()},
                                       {"no_inverse", source->no_inverse}};
-    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(stream, "%s\n", json_dump(json).c_str());
     return ExitCode::done;
   }
   if (!source->no_inverse.empty()) std::fprintf(stream, "no inverse: %s\n", source->no_inverse.c_str());

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/json.h"
 #include "sysid/recordings/recording.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
@@ -61,7 +62,7 @@ void report(const PlotOptions& options, const std::vector<sysid::Recording>& rec
   json["channels"] = told_of(options, recordings.front());
   if (recordings.size() > 1) json["second"] = {{"channels", told_of(options, recordings.back())}};
   if (options.json) {
-    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(stream, "%s\n", json_dump(json).c_str());
   } else {
     std::fprintf(stream, "-> %s\n", options.out.c_str());
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/json.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
@@ -29,7 +30,7 @@ void print_verification_json(const Verification& v) {
   for (const Difference& d : v.comparison.differences)
     json["differences"].push_back(
         {{"where", d.where}, {"reported", d.reported}, {"recomputed", d.recomputed}});
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  std::printf("%s\n", json_dump(json, 2).c_str());
 }
 
 void print_verification(const Verification& v, const std::string& folder) {

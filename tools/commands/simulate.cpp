@@ -8,6 +8,7 @@
 
 #include <fmt/ranges.h>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "sysid/logs/simulated_log.h"
 #include "tools/command_line/input_files.h"
@@ -79,7 +80,7 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
     json["span_mm"] = span_mm;
     json["noise_mm"] = options.settings.noise_mm;
     json["seed"] = options.settings.seed;
-    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(stream, "%s\n", json_dump(json).c_str());
     return;
   }
   std::fprintf(stream, "%s, response to %s: %zu samples, %s s, span %s %s, noise %s %s, seed %s -> %s\n",

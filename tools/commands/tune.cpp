@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
 #include "tools/command_line/input_files.h"
@@ -107,7 +108,7 @@ std::string json_of(const TuneOptions& options, const control::TuneTask& task, c
   json["mean_mm"] = task.mean_mm;
   json["amplitude_mm"] = task.amplitude_mm;
   json["seed"] = task.seed;
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_dump(json) + "\n";
 }
 
 ExitCode run(const TuneOptions& chosen) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/time.h"
 #include "sysid/import/mcap_table.h"
@@ -45,7 +46,7 @@ std::uint32_t checksum(std::string_view bytes) {
 }
 
 std::string json_text(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_dump(nlohmann::json(text));
 }
 
 /// One sample of a group. The samples of all groups are sorted by time.
@@ -85,8 +86,7 @@ std::string schema_of(const SignalGroup& group) {
   nlohmann::ordered_json properties{{"time_s", {{"type", "number"}}}};
   for (const Signal& signal : group.signals)
     properties[signal.name] = {{"type", signal.texts.empty() ? "number" : "string"}};
-  return nlohmann::ordered_json{{"type", "object"}, {"properties", properties}}.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_dump(nlohmann::ordered_json{{"type", "object"}, {"properties", properties}});
 }
 
 class Writer {

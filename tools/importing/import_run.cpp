@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/text.h"
 #include "base/version.h"
@@ -260,7 +261,7 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
   }
   if (options.json) {
     const ordered_json all{{"schema", 1}, {"logs", logs}};
-    std::fprintf(stream, "%s\n", all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(stream, "%s\n", json_dump(all).c_str());
   }
 }
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
+#include "base/json.h"
 #include "tools/client/daemon_text.h"
 
 namespace softgrip::web {
@@ -125,8 +126,7 @@ void Archive::Shared::answer(DiskTask& task) const try {
 void Archive::Shared::list(const DiskTasks& tasks) {
   if (std::all_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.use_count() == 1; })) return;
   const Json list = recordings.list(wall_time_now(), [this] { run_quick_tasks(); });
-  const auto text = std::make_shared<const std::string>(
-      Json{{"recordings", list}}.dump(-1, ' ', false, Json::error_handler_t::replace));
+  const auto text = std::make_shared<const std::string>(json_dump(Json{{"recordings", list}}));
   for (const std::shared_ptr<DiskTask>& task : tasks) task->answer_text(text);
   notify();
 }

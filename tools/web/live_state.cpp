@@ -35,8 +35,7 @@ enum RequestId : std::uint64_t { hello = 1, watch, subscribe, statistics, sequen
 
 std::string message_of(std::string_view kind, const Json& data) {
   // The JSON text contains no line breaks, so it fits into one data line of the message.
-  return "event: " + std::string(kind) +
-         "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
+  return "event: " + std::string(kind) + "\ndata: " + json_dump(data) + "\n\n";
 }
 
 void LiveState::set_status(Json status) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/json.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/metrics.h"
 
@@ -35,7 +36,7 @@ constexpr std::string_view icon =
 
 void put_json(Response& response, const Json& json, int status = 200) {
   response.status = status;
-  response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), json_type);
+  response.set_content(json_dump(json), json_type);
 }
 
 void put_error(Response& response, int status, std::string_view message) {
