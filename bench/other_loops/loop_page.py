@@ -18,8 +18,8 @@ CRITERION = ("The effect of a sticking valve is *visible* if two conditions are 
              "for 5 samples or more while the output changes by at least S/2, and then moves. This criterion was fixed before "
              "softgrip judged a loop.")
 HALF_TEXT = ("The 2 halves have the same kinds of loops with different random numbers. Rules of softgrip were developed with the "
-             "first half only. Before the last change of the rules (a phase shift near 180 degrees), the authors had seen the answers "
-             "of an earlier version for the second half.")
+             "first half and with loops of other seeds. Before the last change of the rules (other explanations, depending on the "
+             "correlation of command and reading), the authors had seen the answers of an earlier version for the second half.")
 
 
 def by_half(values):

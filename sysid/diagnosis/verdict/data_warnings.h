@@ -50,10 +50,12 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
 /// - A drift of the sensor is visible only while the finger rests without pressure. If no log contains such a
 ///   rest, the drift is moved from `causes` to `partial` and listed in `not_tested`.
 /// - If every log was recorded in a closed loop, a warning is added.
-/// - If, in addition, the phase of each loop is that of a sticking valve
-/// (sysid/diagnosis/verdict/loop_phase.h),
+/// - If, in addition, a sticking valve explains the readings of each loop best (shown_stiction()),
 ///   valve_deadband is named. The causes of the search are then moved to `partial`.
-void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs);
+/// @param responses  readings that the refitted model predicts, one value per row of each log. Empty: the
+/// hysteresis of the model is not compared with a sticking valve.
+void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs,
+                     const std::vector<std::vector<double>>& responses);
 
 /// Longest time over which consecutive readings are averaged, in units of time_unit_s(). For a finger, it is
 /// half of the sampling interval at 100 Hz.

@@ -54,7 +54,7 @@ class Diagnostician {
 
   tl::expected<Diagnosis, std::string> run() {
     if (auto done = judge_displacement(); !done) return Failure(done.error());
-    correct_by_logs(d_, logs_);
+    correct_by_logs(d_, logs_, responses());
     if (d_.in_valve) take_out_named(*d_.in_valve);
     return std::move(d_);
   }
@@ -127,6 +127,16 @@ class Diagnostician {
       clock.ended("base");
     }
     return {};
+  }
+
+  /// Returns the readings that the refitted model predicts, one value per row of each log.
+  [[nodiscard]] std::vector<std::vector<double>> responses() const {
+    const FitPoint& point = d_.recalibrated.point;
+    const std::vector<Record> records = make_records(logs_, options_.record);
+    std::vector<std::vector<double>> all;
+    for (std::size_t k = 0; k < records.size(); ++k)
+      all.push_back(predict(point.model, records[k], point.starts[k]));
+    return all;
   }
 
   /// Removes those valve causes that the diagnosis has also found in the displacement.

@@ -15,16 +15,19 @@ namespace softgrip::sysid {
 namespace {
 
 struct Series {
-  std::vector<double> command, reading;
+  std::vector<double> command, reading, response;
 };
 
-/// Returns the samples in which command and reading are finite.
-Series finite_pairs(const std::vector<double>& command, const std::vector<double>& reading) {
+/// Returns the samples in which all series are finite. The response may be empty.
+Series finite_samples(const std::vector<double>& command, const std::vector<double>& reading,
+                      const std::vector<double>& response = {}) {
   Series series;
   for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
     if (!std::isfinite(command[i]) || !std::isfinite(reading[i])) continue;
+    if (!response.empty() && !std::isfinite(response[i])) continue;
     series.command.push_back(command[i]);
     series.reading.push_back(reading[i]);
+    if (!response.empty()) series.response.push_back(response[i]);
   }
   return series;
 }
@@ -36,7 +39,7 @@ struct Pair {
 /// Returns the samples in which command and reading are finite. Both series are scaled to zero mean and unit
 /// standard deviation. The result is empty if one of the series is constant.
 Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
-  const auto [u, y] = finite_pairs(command, reading);
+  const auto [u, y, unused] = finite_samples(command, reading);
   const auto scaled = [](const std::vector<double>& values) {
     Eigen::VectorXd v =
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -50,8 +53,9 @@ Pair pairs_of(const std::vector<double>& command, const std::vector<double>& rea
   return pair;
 }
 
-double squares_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
-  return (target - columns * columns.colPivHouseholderQr().solve(target)).squaredNorm();
+/// Returns the part of the target that a linear combination of the columns does not describe.
+Eigen::VectorXd beyond(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  return target - columns * columns.colPivHouseholderQr().solve(target);
 }
 
 /// Returns the smallest positive lag at which the correlation sum a(t) b(t + lag) changes its sign,
@@ -89,14 +93,19 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
     columns.col(lag - 1) = u.segment(order - lag, rows);
     columns.col(order + lag - 1) = y.segment(order - lag, rows);
   }
-  const Eigen::VectorXd target = u.tail(rows);
-  const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
+  const Eigen::VectorXd target = u.tail(rows), new_command = beyond(columns, target);
+  const double own = beyond(columns.leftCols(order), target).squaredNorm(), both = new_command.squaredNorm();
   const auto free = static_cast<double>(rows - 2 * order);
   // If past values of the command predict the command exactly, only rounding errors remain. The F test of
   // rounding errors would have no meaning.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
-  return f > f_quantile(limits::strict_probability, static_cast<double>(order), free);
+  if (f > f_quantile(limits::strict_probability, static_cast<double>(order), free)) return true;
+  const Eigen::VectorXd new_reading = beyond(columns, y.tail(rows));
+  const double correlation = new_command.dot(new_reading) / (new_command.norm() * new_reading.norm());
+  // Square of Student's t of a partial correlation.
+  const double t2 = square(correlation) * (free - 1) / (1 - square(correlation));
+  return correlation < 0 && t2 > square(limits::strict_deviate);
 }
 
 std::optional<double> phase_ratio(const std::vector<double>& command, const std::vector<double>& reading) {
@@ -108,12 +117,17 @@ std::optional<double> phase_ratio(const std::vector<double>& command, const std:
 }
 
 std::optional<StickingStem> shown_stiction(const std::vector<double>& command,
-                                           const std::vector<double>& reading) {
+                                           const std::vector<double>& reading,
+                                           const std::vector<double>& response) {
   if (!is_closed_loop(command, reading)) return std::nullopt;
-  const std::optional<double> ratio = phase_ratio(command, reading);
-  if (!ratio || (*ratio <= limits::even_phase_ratio && rise_together(command, reading))) return std::nullopt;
-  const auto [u, y] = finite_pairs(command, reading);
-  const std::optional<StickingStem> stem = best_sticking_stem(u, y);
+  auto [u, y, modelled] = finite_samples(command, reading, response);
+  OtherExplanations others;
+  if (rise_together(u, y)) {
+    const std::optional<double> ratio = phase_ratio(u, y);
+    others.curved = ratio && *ratio <= limits::even_phase_ratio;
+    others.response = std::move(modelled);
+  }
+  const std::optional<StickingStem> stem = best_sticking_stem(u, y, others);
   if (!stem || stem->log_likelihood_ratio <= limits::strict_log_likelihood) return std::nullopt;
   return stem;
 }

@@ -2,14 +2,17 @@
 // Detects valve stiction in a closed loop.
 //
 // In a closed loop, the command depends on the readings and their noise. A simulation from the command
-// therefore gives no evidence about the valve. If the cross-correlation of command and reading is even and
-// positive (phase shift of 0 degrees), the reading follows the command. Hysteresis of the finger then has the
-// same effect as a sticking valve. If the valve sticks, the cross-correlation is odd (90 degrees): A. Horch,
-// "A simple method for detection of stiction in control valves", Control Engineering Practice 7 (1999)
-// 1221-1231. This holds for processes that settle. If the process integrates, as the level of a tank does,
-// the phase shift is near 180 degrees. A disturbance or a tightly tuned controller also causes a shift of 180
-// degrees, and an integrating controller shifts the phase of slow disturbances by 90 degrees. The phase can
-// therefore exclude a sticking valve, but only the comparison of predictions in loop_valve.h can show it.
+// therefore gives no evidence about the valve. Only the comparison of predictions in loop_valve.h can show
+// that the valve sticks. The correlation of command and reading determines which other explanations must be
+// compared with a sticking valve:
+// - If command and reading rise together, hysteresis of the finger has a similar effect as a sticking valve.
+//   Then the hysteresis of the model is compared, too. If they do not rise together, the controller acts
+//   against a disturbance, and a fit of the model to this record is meaningless.
+// - If, in addition, the cross-correlation is even (phase shift of 0 degrees), the reading follows the
+//   command without a delay that is visible. Then a curved characteristic is compared, too. A curved
+//   characteristic does not shift the phase. A sticking valve in a process that settles shifts it by 90
+//   degrees: A. Horch, "A simple method for detection of stiction in control valves", Control Engineering
+//   Practice 7 (1999) 1221-1231.
 
 #include <optional>
 #include <vector>
@@ -18,10 +21,12 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if past readings improve the prediction of the command from its own past values. The function
-/// applies Granger's test with three past samples of each series at the level limits::strict_probability. The
-/// result is false for a command whose noise is below limits::planned_roughness, because such a command was
-/// planned before the run.
+/// Returns true if the command depends on the readings. One of two conditions must hold at the level
+/// limits::strict_probability. Either past readings improve the prediction of the command from its own past
+/// values (Granger's test with three past samples of each series). Or, with the same past samples, a higher
+/// reading is related to a lower command of the same sample. The finger itself has the opposite effect,
+/// because a higher pressure increases the reading. The result is false for a command whose noise is below
+/// limits::planned_roughness, because such a command was planned before the run.
 /// @param command, reading  series of equal length. Samples with a NaN in one of the series are skipped. With
 /// fewer than 53 remaining samples, the result is false.
 [[nodiscard]] bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading);
@@ -33,11 +38,14 @@ namespace softgrip::sysid {
 [[nodiscard]] std::optional<double> phase_ratio(const std::vector<double>& command,
                                                 const std::vector<double>& reading);
 
-/// Returns the sticking valve that the signals show, or nullopt. Three conditions must hold: the loop is
-/// closed, the phase shift between command and reading is more than 30 degrees, and a sticking valve
-/// predicts the readings better than a valve that follows the command. The required likelihood ratio is
-/// exp(limits::strict_log_likelihood), multiplied by the number of sticking valves that are compared.
+/// Returns the sticking valve that the signals show, or nullopt. Two conditions must hold: the loop is
+/// closed, and a sticking valve predicts the readings better than the other explanations (see above). The
+/// required likelihood ratio is exp(limits::strict_log_likelihood), multiplied by the number of sticking
+/// valves that are compared.
+/// @param response  readings that the model predicts from the command, or empty. It has the length of
+/// `command` and `reading`. Samples with a NaN in one of the series are skipped.
 [[nodiscard]] std::optional<StickingStem> shown_stiction(const std::vector<double>& command,
-                                                         const std::vector<double>& reading);
+                                                         const std::vector<double>& reading,
+                                                         const std::vector<double>& response = {});
 
 }  // namespace softgrip::sysid

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -84,16 +85,16 @@ class Predictions {
   }
 
   /// Returns the best fit.
-  [[nodiscard]] Fit fit(const std::vector<double>& input) const {
-    Fit best;
-    for (std::size_t zero = 0; zero < load_zeros.size(); ++zero) {
-      const Eigen::VectorXd white = whitened(input, load_zeros[zero]);
-      for (const double pole : process_poles) {
-        const double left = squares(lagged(white, pole), zero);
-        if (left < best.squares) best = {left, {zero, pole}};
-      }
-    }
-    return best;
+  [[nodiscard]] Fit fit(const std::vector<double>& input) const { return fit({&input}); }
+
+  /// Returns the best fit to a quadratic function of the input.
+  [[nodiscard]] Fit fit_curved(const std::vector<double>& input) const {
+    const double middle =
+        Eigen::Map<const Eigen::ArrayXd>(input.data(), static_cast<Eigen::Index>(input.size())).mean();
+    std::vector<double> squared;
+    squared.reserve(input.size());
+    for (const double value : input) squared.push_back((value - middle) * (value - middle));
+    return fit({&input, &squared});
   }
 
  private:
@@ -102,15 +103,37 @@ class Predictions {
     Eigen::VectorXd target;  ///< readings that the past readings do not predict
   };
 
-  [[nodiscard]] double squares(const Eigen::VectorXd& input, std::size_t zero) const {
+  /// Returns the best fit to a linear combination of the inputs.
+  [[nodiscard]] Fit fit(std::initializer_list<const std::vector<double>*> inputs) const {
+    const auto count = static_cast<Eigen::Index>(inputs.size());
+    Eigen::MatrixXd white(rows_ + skipped, count), moved(rows_ + skipped, count);
+    Fit best;
+    for (std::size_t zero = 0; zero < load_zeros.size(); ++zero) {
+      Eigen::Index column = 0;
+      for (const auto* const input : inputs) white.col(column++) = whitened(*input, load_zeros[zero]);
+      for (const double pole : process_poles) {
+        for (column = 0; column < count; ++column) moved.col(column) = lagged(white.col(column), pole);
+        const double left = squares(moved, zero);
+        if (left < best.squares) best = {left, {zero, pole}};
+      }
+    }
+    return best;
+  }
+
+  /// Returns the smallest sum of squares of the one-step prediction errors over all dead times.
+  /// @param inputs  one input per column. The gain of the first input must not be negative.
+  [[nodiscard]] double squares(const Eigen::MatrixXd& inputs, std::size_t zero) const {
     const auto& [past, target] = readings_[zero];
     const double all = target.squaredNorm();
     double least = all;
     for (const Eigen::Index delay : dead_times) {
-      const auto moved = input.segment(skipped - delay, rows_);
-      const double gained = std::max(0.0, moved.dot(target)), whole = moved.squaredNorm(),
-                   size = whole - (past.transpose() * moved).squaredNorm();
-      if (size > 1e-9 * whole) least = std::min(least, all - gained * gained / size);
+      const auto moved = inputs.middleRows(skipped - delay, rows_);
+      const Eigen::MatrixXd known = past.transpose() * moved, whole = moved.transpose() * moved;
+      const Eigen::MatrixXd left = whole - known.transpose() * known;
+      if (!(left.diagonal().array() > 1e-9 * whole.diagonal().array()).all()) continue;
+      const Eigen::VectorXd gained = moved.transpose() * target;
+      const Eigen::VectorXd gains = left.colPivHouseholderQr().solve(gained);
+      if (gains[0] > 0) least = std::min(least, all - gained.dot(gains));
     }
     return least;
   }
@@ -135,7 +158,7 @@ std::size_t moves_in(const std::vector<double>& stem) {
   return moves;
 }
 
-/// Sticking valves that are compared with a valve that follows the command.
+/// Sticking valves that are compared with other explanations of the readings.
 class Stems {
  public:
   Stems(const std::vector<double>& command, const std::vector<double>& reading, double most_band,
@@ -154,8 +177,10 @@ class Stems {
     }
   }
 
-  [[nodiscard]] std::optional<StickingStem> best() {
-    const double follows = predictions_.fit(command_).squares;
+  [[nodiscard]] std::optional<StickingStem> best(const OtherExplanations& others) {
+    double follows = predictions_.fit(command_).squares;
+    if (others.curved) follows = std::min(follows, predictions_.fit_curved(command_).squares);
+    if (!others.response.empty()) follows = std::min(follows, predictions_.fit(others.response).squares);
     std::sort(tried_.begin(), tried_.end(),
               [](const Tried& a, const Tried& b) { return a.fit.squares < b.fit.squares; });
     tried_.resize(std::min(tried_.size(), limits::followed_starts));
@@ -235,7 +260,8 @@ std::vector<double> stem_positions(const std::vector<double>& command, double ba
 }
 
 std::optional<StickingStem> best_sticking_stem(const std::vector<double>& command,
-                                               const std::vector<double>& reading) {
+                                               const std::vector<double>& reading,
+                                               const OtherExplanations& others) {
   if (command.size() != reading.size() ||
       command.size() < limits::fewest_readings + static_cast<std::size_t>(skipped) ||
       repeated_share(command) > limits::majority_share || repeated_share(reading) > limits::majority_share)
@@ -248,7 +274,7 @@ std::optional<StickingStem> best_sticking_stem(const std::vector<double>& comman
   for (const double share : band_shares) {
     for (const double jump_share : jump_shares) stems.add(share * span, jump_share * share * span);
   }
-  return stems.best();
+  return stems.best(others);
 }
 
 }  // namespace softgrip::sysid

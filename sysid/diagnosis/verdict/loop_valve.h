@@ -10,7 +10,8 @@
 // the stem position behind a dead time and a first-order lag, and of a load. The load is an integrated
 // autoregressive moving-average process, so the one-step predictions are consistent in a closed loop, too
 // (L. Ljung, "System Identification", 2nd edition, 1999). The prediction of a reading uses no command of the
-// same sample, because this command may depend on the reading.
+// same sample, because this command may depend on the reading. Other explanations of the readings can be
+// compared in addition: a curved characteristic, and the hysteresis of a model.
 
 #include <optional>
 #include <vector>
@@ -25,7 +26,15 @@ namespace softgrip::sysid {
 [[nodiscard]] std::vector<double> stem_positions(const std::vector<double>& command, double band,
                                                  double jump);
 
-/// The best sticking valve, compared with a valve that follows the command.
+/// Explanations of the readings without a sticking valve, in addition to a reading that follows the command.
+struct OtherExplanations {
+  bool curved = false;  ///< the reading is a quadratic function of the delayed and lagged command
+  /// Response of a model to the command, or empty. One value per reading. Like the command, it predicts only
+  /// later readings.
+  std::vector<double> response;
+};
+
+/// The best sticking valve, compared with the best explanation without a sticking valve.
 struct StickingStem {
   double band = 0;  ///< S, in the unit of the command
   double jump = 0;  ///< J, in the unit of the command
@@ -45,6 +54,7 @@ struct StickingStem {
 /// - no band is possible, or the series are too short.
 /// @param command, reading  series of equal length without NaN
 [[nodiscard]] std::optional<StickingStem> best_sticking_stem(const std::vector<double>& command,
-                                                             const std::vector<double>& reading);
+                                                             const std::vector<double>& reading,
+                                                             const OtherExplanations& others = {});
 
 }  // namespace softgrip::sysid

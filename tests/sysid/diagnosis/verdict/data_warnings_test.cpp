@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -73,17 +74,17 @@ std::vector<Log> loop(double band, double wave) {
 
 TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
   Diagnosis d = with({"sensor_drift", "transport_delay"});
-  correct_by_logs(d, planned(0));
+  correct_by_logs(d, planned(0), {});
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"transport_delay"});
   EXPECT_EQ(ids(d.partial), std::vector<std::string>{"sensor_drift"});
   EXPECT_EQ(d.verdict, Verdict::partly_explained);
   EXPECT_NE(d.not_tested.at("sensor_drift").find("rest"), std::string::npos);
   Diagnosis alone = with({"sensor_drift"});
-  correct_by_logs(alone, planned(2.9));
+  correct_by_logs(alone, planned(2.9), {});
   EXPECT_TRUE(alone.causes.empty());
   EXPECT_EQ(alone.verdict, Verdict::unexplained);
   Diagnosis shown = with({"sensor_drift"});
-  correct_by_logs(shown, planned(3.1));
+  correct_by_logs(shown, planned(3.1), {});
   EXPECT_EQ(ids(shown.causes), std::vector<std::string>{"sensor_drift"});
   EXPECT_EQ(shown.verdict, Verdict::cause_found);
   EXPECT_TRUE(shown.not_tested.empty());
@@ -91,7 +92,7 @@ TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
 
 TEST(UntestedCauses, ClosedLoopNamesAStickingValveWithItsBand) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
-  correct_by_logs(d, loop(0.3, 0));
+  correct_by_logs(d, loop(0.3, 0), {});
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"valve_deadband"});
   EXPECT_EQ(ids(d.partial), std::vector<std::string>{"rate_dependent_hysteresis"});
   ASSERT_EQ(d.warnings.size(), 2U);
@@ -101,17 +102,42 @@ TEST(UntestedCauses, ClosedLoopNamesAStickingValveWithItsBand) {
 
 TEST(UntestedCauses, DisturbedClosedLoopKeepsTheNamedCauses) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
-  correct_by_logs(d, loop(0, 1));
+  correct_by_logs(d, loop(0, 1), {});
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
   ASSERT_EQ(d.warnings.size(), 1U);
   EXPECT_NE(d.warnings.front().find("closed loop"), std::string::npos);
+}
+
+/// If command and reading rise together, a response with hysteresis explains the readings as well as a
+/// sticking valve does.
+TEST(UntestedCauses, HysteresisOfTheModelKeepsTheNamedCauses) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 0.01);
+  Log log;
+  std::vector<double> response;
+  double left = 0, moved = 0, sum = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const double setpoint = 0.3 * (i / 80 % 3), error = setpoint - moved + noise(random);
+    sum += 0.05 * error;
+    log.time_s.push_back(i);
+    log.pressure_command_kpa.push_back(10 + 0.1 * error + sum);
+    log.displacement_mm.push_back(setpoint - error);
+    left = std::clamp(left, 0.1 * error + sum - 0.15, 0.1 * error + sum + 0.15);
+    moved += 0.5 * (left - moved);
+    response.push_back(moved);
+  }
+  Diagnosis d = with({"rate_dependent_hysteresis"}), without = d;
+  correct_by_logs(d, {log}, {response});
+  EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
+  correct_by_logs(without, {log}, {});
+  EXPECT_EQ(ids(without.causes), std::vector<std::string>{"valve_deadband"});
 }
 
 TEST(UntestedCauses, OnePlannedLogRulesOutAClosedLoop) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
   std::vector<Log> logs = loop(0.3, 0);
   logs.push_back(planned(5).front());
-  correct_by_logs(d, logs);
+  correct_by_logs(d, logs, {});
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
   EXPECT_TRUE(d.warnings.empty());
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -108,6 +109,10 @@ TEST(LoopPhase, StictionInALevelLoopGivesAPhaseNear180Degrees) {
     const auto stem = shown_stiction(s.command, s.reading);
     ASSERT_TRUE(stem) << seed;
     EXPECT_NEAR(stem->band, 0.3, 0.1) << seed;
+    // Command and reading do not rise together, so a fitted response is no other explanation.
+    std::vector<double> next(s.reading.begin() + 1, s.reading.end());
+    next.push_back(s.reading.back());
+    EXPECT_TRUE(shown_stiction(s.command, s.reading, next)) << seed;
     const Signals outflow = tank(0, 0.3, seed);
     EXPECT_TRUE(is_closed_loop(outflow.command, outflow.reading)) << seed;
     EXPECT_FALSE(shown_stiction(outflow.command, outflow.reading)) << seed;
@@ -129,26 +134,80 @@ TEST(LoopPhase, AnOddCrossCorrelationOfASlowDisturbanceIsNoStiction) {
   }
 }
 
-/// If the reading follows a changing setpoint, hysteresis of the finger has the same effect as a sticking
-/// valve.
-TEST(LoopPhase, AReadingThatFollowsItsSetpointShowsNoStiction) {
+/// Signals of a loop, and the noise-free response of the finger to the command.
+struct Following {
+  Signals signals;
+  std::vector<double> response;
+};
+
+/// Returns the signals of a loop whose reading follows a setpoint that changes in steps.
+/// @param motion  motion of the finger for a command, before the lag. It may have a state.
+/// @param step  change of the setpoint.
+template <class Motion>
+Following following(Motion motion, double step = 0.3) {
   std::mt19937 random(2);
   std::normal_distribution<double> noise(0, 0.01);
-  Signals s;
-  double stem = 0, flow = 0, sum = 0;
+  Following f;
+  double flow = 0, sum = 0;
   for (int i = 0; i < 1500; ++i) {
-    const double setpoint = 0.3 * (i / 80 % 3), error = setpoint - flow + noise(random);
+    const double setpoint = step * (i / 80 % 3), error = setpoint - flow + noise(random);
     sum += 0.05 * error;
-    s.command.push_back(0.1 * error + sum);
-    if (std::abs(s.command.back() - stem) > 0.3) stem = s.command.back();
-    flow += 0.5 * (stem - flow);
-    s.reading.push_back(setpoint - error);
+    f.signals.command.push_back(0.1 * error + sum);
+    flow += 0.5 * (motion(f.signals.command.back()) - flow);
+    f.response.push_back(flow);
+    f.signals.reading.push_back(setpoint - error);
   }
-  const auto stem_found = best_sticking_stem(s.command, s.reading);
-  ASSERT_TRUE(stem_found);
-  EXPECT_GT(stem_found->log_likelihood_ratio, limits::strict_log_likelihood);
+  return f;
+}
+
+TEST(LoopPhase, StictionIsShownIfTheReadingFollowsASetpoint) {
+  double stem = 0;
+  const auto [s, unused] = following([&](double command) {
+    if (std::abs(command - stem) > 0.3) stem = command;
+    return stem;
+  });
   EXPECT_TRUE(is_closed_loop(s.command, s.reading));
+  EXPECT_LT(phase_ratio(s.command, s.reading).value_or(1), limits::even_phase_ratio);
+  const auto found = shown_stiction(s.command, s.reading);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->band, 0.3, 0.1);
+}
+
+TEST(LoopPhase, HysteresisOfTheModelIsNoStiction) {
+  double left = 0;
+  const auto [s, response] = following([&](double command) {
+    left = std::clamp(left, command - 0.15, command + 0.15);  // play
+    return left;
+  });
+  EXPECT_TRUE(is_closed_loop(s.command, s.reading));
+  EXPECT_TRUE(shown_stiction(s.command, s.reading));
+  EXPECT_FALSE(shown_stiction(s.command, s.reading, response));
+  // A response that does not describe the hysteresis gives no other explanation.
+  EXPECT_TRUE(shown_stiction(s.command, s.reading, s.command));
+}
+
+TEST(LoopPhase, ACurvedCharacteristicIsNoStiction) {
+  const auto exponential = [](double command) { return 0.1 * std::exp(2 * command) - 0.1; };
+  const auto [s, unused] = following(exponential, 3);
+  EXPECT_TRUE(is_closed_loop(s.command, s.reading));
+  EXPECT_GT(best_sticking_stem(s.command, s.reading).value().log_likelihood_ratio,
+            limits::strict_log_likelihood);
   EXPECT_FALSE(shown_stiction(s.command, s.reading));
+}
+
+/// If the sampling interval is long, the command depends on the reading of the same sample only.
+TEST(LoopPhase, AnImmediateFeedbackIsAClosedLoopAndAnImmediateResponseIsNot) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 1);
+  Signals fed_back, responding;
+  for (int i = 0; i < 1000; ++i) {
+    fed_back.reading.push_back(normal(random));
+    fed_back.command.push_back(-0.5 * fed_back.reading.back() + normal(random));
+    responding.command.push_back(normal(random));
+    responding.reading.push_back(0.5 * responding.command.back() + normal(random));
+  }
+  EXPECT_TRUE(is_closed_loop(fed_back.command, fed_back.reading));
+  EXPECT_FALSE(is_closed_loop(responding.command, responding.reading));
 }
 
 /// With these seeds, the valve rests during the whole record. The command then only integrates the noise of

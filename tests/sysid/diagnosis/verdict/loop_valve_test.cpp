@@ -94,6 +94,21 @@ TEST(LoopValve, TheBandExceedsTheNoiseOfTheCommand) {
   EXPECT_TRUE(!found || found->band > 0.25 * (*high - *low));
 }
 
+TEST(LoopValve, OtherExplanationsReduceTheLikelihoodRatio) {
+  const Signals s = loop(2, 1, 0.01, 1);
+  const auto ratio = [&](const OtherExplanations& others) {
+    return best_sticking_stem(s.command, s.reading, others).value().log_likelihood_ratio;
+  };
+  const double alone = ratio({});
+  EXPECT_LE(ratio({true, {}}), alone);
+  // A response that nearly predicts the next reading is the best explanation.
+  std::vector<double> next(s.reading.begin() + 1, s.reading.end());
+  next.push_back(s.reading.back());
+  for (std::size_t i = 0; i < next.size(); i += 2) next[i] += 0.01;
+  EXPECT_LT(ratio({false, next}), 0);
+  EXPECT_EQ(ratio({false, std::vector<double>(s.reading.size(), 1.0)}), alone);
+}
+
 TEST(LoopValve, ACompressedRecordIsNotTested) {
   Signals s = loop(2, 1, 0.01, 1);
   ASSERT_TRUE(best_sticking_stem(s.command, s.reading));
