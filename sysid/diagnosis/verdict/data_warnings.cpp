@@ -19,6 +19,7 @@
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/causes/sensor_drift.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
+#include "sysid/diagnosis/residual/closed_loop.h"
 #include "sysid/diagnosis/verdict/loop_phase.h"
 #include "sysid/evidence/signature.h"
 #include "sysid/fitting/trajectory.h"

@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
-#include "base/statistics.h"
+#include "sysid/diagnosis/residual/closed_loop.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
@@ -36,26 +36,16 @@ struct Pair {
   Eigen::VectorXd command, reading;
 };
 
-/// Returns the samples in which command and reading are finite. Both series are scaled to zero mean and unit
-/// standard deviation. The result is empty if one of the series is constant.
-Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
+/// Returns the deviations of command and reading from their means, for the samples in which both are finite.
+Pair deviations(const std::vector<double>& command, const std::vector<double>& reading) {
   const auto [u, y, unused] = finite_samples(command, reading);
-  const auto scaled = [](const std::vector<double>& values) {
+  const auto from_mean = [](const std::vector<double>& values) {
     Eigen::VectorXd v =
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    if (v.size() == 0) return v;
-    v.array() -= v.mean();
-    const double spread = std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
-    return spread > 0 ? Eigen::VectorXd(v / spread) : Eigen::VectorXd();
+    if (v.size() > 0) v.array() -= v.mean();
+    return v;
   };
-  Pair pair{scaled(u), scaled(y)};
-  if (pair.command.size() == 0 || pair.reading.size() == 0) return {};
-  return pair;
-}
-
-/// Returns the part of the target that a linear combination of the columns does not describe.
-Eigen::VectorXd beyond(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
-  return target - columns * columns.colPivHouseholderQr().solve(target);
+  return {from_mean(u), from_mean(y)};
 }
 
 /// Returns the smallest positive lag at which the correlation sum a(t) b(t + lag) changes its sign,
@@ -75,42 +65,15 @@ std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::Vect
 
 /// Returns true if the correlation of command and reading at lag 0 is positive.
 bool rise_together(const std::vector<double>& command, const std::vector<double>& reading) {
-  const auto [u, y] = pairs_of(command, reading);
+  const auto [u, y] = deviations(command, reading);
   return u.dot(y) > 0;
 }
 
 }  // namespace
 
-bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading) {
-  constexpr Eigen::Index order = 3, fewest = 50;
-  const auto [u, y] = pairs_of(command, reading);
-  const Eigen::Index rows = u.size() - order;
-  if (rows < fewest ||
-      third_difference_noise({u.data(), static_cast<std::size_t>(u.size())}) < limits::planned_roughness)
-    return false;
-  Eigen::MatrixXd columns(rows, 2 * order);
-  for (Eigen::Index lag = 1; lag <= order; ++lag) {
-    columns.col(lag - 1) = u.segment(order - lag, rows);
-    columns.col(order + lag - 1) = y.segment(order - lag, rows);
-  }
-  const Eigen::VectorXd target = u.tail(rows), new_command = beyond(columns, target);
-  const double own = beyond(columns.leftCols(order), target).squaredNorm(), both = new_command.squaredNorm();
-  const auto free = static_cast<double>(rows - 2 * order);
-  // If past values of the command predict the command exactly, only rounding errors remain. The F test of
-  // rounding errors would have no meaning.
-  if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
-  const double f = (own - both) / static_cast<double>(order) / (both / free);
-  if (f > f_quantile(limits::strict_probability, static_cast<double>(order), free)) return true;
-  const Eigen::VectorXd new_reading = beyond(columns, y.tail(rows));
-  const double correlation = new_command.dot(new_reading) / (new_command.norm() * new_reading.norm());
-  // Square of Student's t of a partial correlation.
-  const double t2 = square(correlation) * (free - 1) / (1 - square(correlation));
-  return correlation < 0 && t2 > square(limits::strict_deviate);
-}
-
 std::optional<double> phase_ratio(const std::vector<double>& command, const std::vector<double>& reading) {
-  const auto [u, y] = pairs_of(command, reading);
-  if (u.size() == 0) return std::nullopt;
+  const auto [u, y] = deviations(command, reading);
+  if (!(u.squaredNorm() > 0) || !(y.squaredNorm() > 0)) return std::nullopt;
   const std::optional<double> right = first_crossing(u, y), left = first_crossing(y, u);
   if (!right || !left || *right + *left == 0) return std::nullopt;
   return std::abs(*left - *right) / (*left + *right);
