@@ -12,8 +12,10 @@
 #include "base/thread_budget.h"
 #include "sysid/changes/base.h"
 #include "sysid/changes/change_judge.h"
+#include "sysid/changes/change_warnings.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/sampling.h"
+#include "sysid/diagnosis/residual/closed_loop.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/diagnosis/residual/sampling.h"
@@ -73,6 +75,13 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
   const auto among = repetition_warnings(later, healthy, "the healthy log",
                                          "The comparison of a log with itself cannot show a change");
   warnings.insert(warnings.end(), among.begin(), among.end());
+  std::vector<std::string> closed;
+  for (const std::vector<Log>* const logs : {&healthy, &later}) {
+    for (const Log& log : *logs) {
+      if (is_closed_loop(log.pressure_command_kpa, log.displacement_mm)) closed.push_back(log.name);
+    }
+  }
+  if (!closed.empty()) warnings.push_back(closed_loops(closed));
   const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
   if (now_kpa > 1.05 * then_kpa)
     warnings.push_back(

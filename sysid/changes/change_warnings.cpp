@@ -3,8 +3,15 @@
 #include <cmath>
 
 #include "base/numbers.h"
+#include "base/text.h"
 
 namespace softgrip::sysid {
+
+std::string closed_loops(const std::vector<std::string>& logs) {
+  return "The command depends on the readings (closed loop) in " + with_commas(logs) +
+         ". A fit to such logs can describe the controller instead of the finger, so a change may be missed. "
+         "Record healthy and later logs with a planned command";
+}
 
 std::string other_start(const std::string& record) {
   return "No healthy log begins in the same state (pressurised or vented) as " + record +

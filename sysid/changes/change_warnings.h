@@ -1,10 +1,14 @@
 #pragma once
-// Sentences of the warnings that a diagnosis of a change gives about the later logs.
+// Sentences of the warnings that a diagnosis of a change gives about its logs.
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace softgrip::sysid {
+
+/// @param logs  names of the healthy and later logs that were recorded in a closed loop.
+[[nodiscard]] std::string closed_loops(const std::vector<std::string>& logs);
 
 /// @param record  later log that begins in a state (pressurised or vented) in which no healthy log begins.
 [[nodiscard]] std::string other_start(const std::string& record);

@@ -669,6 +669,24 @@ Log with_random_jumps(Log log, double by_mm) {
   return log;
 }
 
+TEST(Change, WarnsOfALogThatWasRecordedInAClosedLoop) {
+  std::vector<Log> later{log_of({}, 5)};
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise_mm(0, 0.02);
+  for (std::size_t i = 0; i < later.front().size(); ++i) {
+    const double error_mm = noise_mm(random);
+    later.front().displacement_mm[i] += error_mm;
+    later.front().pressure_command_kpa[i] -= error_mm;  // a controller with 1 kPa/mm
+  }
+  const auto warnings_of = [](const std::vector<Log>& logs) {
+    std::string all;
+    for (const std::string& warning : diagnose_change({log_of({}, 1)}, logs).value().warnings) all += warning;
+    return all;
+  };
+  EXPECT_NE(warnings_of(later).find("(closed loop) in log5."), std::string::npos);
+  EXPECT_EQ(warnings_of({log_of({}, 5)}).find("closed loop"), std::string::npos);
+}
+
 TEST(Change, AnErrorInOneOfThreeLaterLogsIsNoChange) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   std::vector<Log> later{log_of({}, 5), with_random_jumps(log_of({}, 6), 0.3), log_of({}, 7)};

@@ -6,6 +6,7 @@ namespace softgrip::sysid::change_warnings_test {
 namespace {
 
 TEST(ChangeWarnings, StateTheLogAndTheNumber) {
+  EXPECT_NE(closed_loops({"today"}).find("(closed loop) in today."), std::string::npos);
   EXPECT_TRUE(other_start("today").find("as today, so") != std::string::npos) << other_start("today");
   EXPECT_TRUE(unusual_log("today").starts_with("The error in today is larger")) << unusual_log("today");
   EXPECT_NE(unfamiliar_input(2.5).find("by a factor of up to 2.5 (mean square)"), std::string::npos);
