@@ -149,6 +149,9 @@ void Gateway::update(Nanoseconds now) {
 void Gateway::on_daemon_connected(Nanoseconds now) {
   connected_ = true;
   last_status_at_ = now;
+  // If the daemon has no free connection, it processes only the first line, and only if this is a stop or a
+  // vent. A release requires the name of its client, because another client may own the sequence.
+  if (settings_.when_silent != Reaction::release) send_reaction(now);
   send({{"command", "hello"}, {"client", own_name}, {"api", 1}});
   send({{"command", "watch"}, {"rate_hz", watch_rate_hz}});
 }

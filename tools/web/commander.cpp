@@ -73,11 +73,16 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
         failure("busy", "too many commands are still waiting for a response of the daemon")};
   if (is_start && abandoned_.size() >= max_pending)
     return tl::unexpected<Json>{failure("busy", "the daemon has not confirmed the stops of earlier starts")};
+  const bool is_new = !daemon_;
   if (auto refusal = connect()) return tl::unexpected{std::move(*refusal)};
+  // If the daemon has no free connection, it processes only the first line, and only if this is a stop or a
+  // vent.
+  if (is_new && !is_urgent) greet();
   PendingCommand pending{now + response_timeout, is_start ? tools::new_start_id() : std::string(),
                          std::nullopt};
   if (is_start) request["start_id"] = pending.start_id;
   const std::uint64_t number = send_numbered(std::move(request));
+  if (is_new && is_urgent) greet();
   pending_[number] = std::move(pending);
   return number;
 }
@@ -88,8 +93,12 @@ std::optional<Json> Commander::connect() {
   if (daemon_) return std::nullopt;
   if (!may_connect_) return failure("not_allowed", "this page is read-only");
   if (const auto refusal = daemon_.connect_now()) return failure("no_daemon", refusal->message);
-  daemon_.send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
   return std::nullopt;
+}
+
+/// Sends the name of this program. The events of the daemon then contain the name.
+void Commander::greet() {
+  daemon_.send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
 }
 
 std::uint64_t Commander::send_numbered(Json request) {
@@ -176,10 +185,12 @@ void Commander::retry_stops(Nanoseconds now) {
   if (std::none_of(abandoned_.begin(), abandoned_.end(), is_due)) return;
   if (last_retry_at_ != 0 && now - last_retry_at_ < stop_retry_period) return;
   last_retry_at_ = now;
+  const bool is_new = !daemon_;
   if (connect()) return;
   for (AbandonedStart& start : abandoned_) {
     if (is_due(start)) stop(start);
   }
+  if (is_new) greet();
 }
 
 void Commander::handle_disconnect() {

@@ -69,6 +69,7 @@ class Commander {
                              ///< request
   };
   [[nodiscard]] std::optional<nlohmann::ordered_json> connect();
+  void greet();
   std::uint64_t send_numbered(nlohmann::ordered_json request);
   void process_line(nlohmann::ordered_json line);
   void complete(PendingCommand& pending, nlohmann::ordered_json response);

@@ -62,6 +62,17 @@ class GatewayTest : public ::testing::Test {
     gateway_.on_daemon_connected(now_);
     EXPECT_EQ(sent(), (std::vector<std::string>{"hello", "watch"}));
   }
+  /// The daemon connects while a stop is required. The stop is the first line, because a daemon without a
+  /// free connection processes only this line. Later, accept() and refuse() answer the stop.
+  void daemon_comes_and_gets_the_stop() {
+    gateway_.on_daemon_connected(now_);
+    const std::vector<Json> lines = gateway_.take_lines_to_daemon();
+    ASSERT_EQ(lines.size(), 3U);
+    EXPECT_EQ(lines[0]["command"], "stop");
+    EXPECT_EQ(lines[1]["command"], "hello");
+    EXPECT_EQ(lines[2]["command"], "watch");
+    last_id_ = lines[0]["id"];
+  }
   /// Returns the commands that the gateway has sent to the daemon since the last call.
   std::vector<std::string> sent() {
     std::vector<std::string> commands;
@@ -242,14 +253,12 @@ TEST_F(GatewayTest, RepeatsTheStopUntilADaemonConfirmsTheStop) {
   gateway_.on_daemon_disconnected();  // the daemon and the master become silent at the same time
   pass(settings_.silence_s + 0.1);
   EXPECT_TRUE(sent().empty());
-  daemon_comes();
+  daemon_comes_and_gets_the_stop();
   pass(0.1);
-  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  EXPECT_TRUE(sent().empty());
   gateway_.on_daemon_disconnected();  // the connection ends before the daemon has responded to the stop
   pass(1);
-  daemon_comes();
-  pass(0.1);
-  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  daemon_comes_and_gets_the_stop();
   refuse({{"code", "busy"}});
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
@@ -289,6 +298,17 @@ TEST_F(GatewayTest, RepeatsAReleaseThatAStartingDaemonRefuses) {
   refuse({{"code", "refused"}, {"refusal", {{"code", "R11"}}}});
   pass(0.1);
   EXPECT_TRUE(sent().empty());
+}
+
+TEST_F(GatewayTest, SendsAReleaseAfterTheNameOfTheClient) {
+  settings_.when_silent = Reaction::release;
+  daemon_comes();
+  write(Name::master_heartbeat, 5);
+  gateway_.on_daemon_disconnected();
+  pass(settings_.silence_s + 0.1);
+  daemon_comes();
+  pass(0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"release"});
 }
 
 TEST_F(GatewayTest, ATimeOutWithoutAReactionSendsNoCommand) {

@@ -164,6 +164,26 @@ TEST_F(CommanderTest, OnlyStartsHaveAUniqueStartId) {
   EXPECT_FALSE(lines[2].contains("start_id"));
 }
 
+/// A daemon without a free connection processes only the first line.
+TEST(Commander, AStopOrAVentIsTheFirstLineOfAConnection) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/daemon.sock";
+  const auto daemon = net::listen_unix(path);
+  ASSERT_TRUE(daemon) << daemon.error();
+  const auto first_line_after = [&](const char* command) {
+    Commander commander(path);
+    EXPECT_TRUE(commander.send({{"command", command}, {"sequence", "pick"}}, 0));
+    const Descriptor client = net::accept_client(*daemon);
+    std::array<char, 4096> buffer{};
+    const ssize_t count = ::recv(client.get(), buffer.data(), buffer.size(), 0);
+    const std::string text(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+    return Json::parse(text.substr(0, text.find('\n')))["command"].get<std::string>();
+  };
+  EXPECT_EQ(first_line_after("vent"), "vent");
+  EXPECT_EQ(first_line_after("stop"), "stop");
+  EXPECT_EQ(first_line_after("start"), "hello");
+}
+
 TEST_F(CommanderTest, AStartWithoutAnAnswerIsStopped) {
   const std::uint64_t number = start();
   const Json line = received().at(0);
