@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <ctime>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
@@ -27,7 +28,9 @@ std::optional<Nanoseconds> duration_of(std::string_view number, std::string_view
   const auto* const found =
       std::find_if(units.begin(), units.end(), [&](const auto& known) { return known.first == unit; });
   if (found == units.end() || number.size() > 6) return std::nullopt;
-  return std::strtol(std::string(number).c_str(), nullptr, 10) * found->second * ns_per_s;
+  const Nanoseconds count = std::strtol(std::string(number).c_str(), nullptr, 10);
+  if (count > std::numeric_limits<Nanoseconds>::max() / ns_per_s / found->second) return std::nullopt;
+  return count * found->second * ns_per_s;
 }
 
 /// Parses a local time of day or date. Units that are missing in the text are taken from `now` if they are

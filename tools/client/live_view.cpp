@@ -123,11 +123,14 @@ KeyDialogue::Outcome KeyDialogue::process(std::string_view typed, double time_s,
   // An escape character alone is the escape key. If more characters follow the escape character, they encode
   // an arrow key or a function key, which is ignored.
   if (typed.size() > 1 && typed.front() == escape_key) return {};
-  for (const char one : typed) {
+  for (std::size_t i = 0; i < typed.size(); ++i) {
     const State before = state_;
-    Outcome outcome = key(one, time_s, last_sequence);
+    Outcome outcome = key(typed[i], time_s, last_sequence);
     const bool is_asked = state_ == State::confirming && before != state_;
-    if (outcome.quit || outcome.request || is_asked) return outcome;
+    if (!outcome.quit && !outcome.request && !is_asked) continue;
+    // The later keys are ignored, except the key for vent.
+    const bool vents = !outcome.quit && typed.find('v', i + 1) != std::string_view::npos;
+    return vents ? key('v', time_s, last_sequence) : outcome;
   }
   return {};
 }

@@ -113,6 +113,13 @@ TEST_F(KeyDialogueTest, StopVentAcknowledgeAndQuitNeedNoConfirmation) {
   EXPECT_EQ(type("x"), "");
 }
 
+TEST_F(KeyDialogueTest, AVentIsSentAlsoIfItFollowsAnotherKeyInOneRead) {
+  for (const char* const keys : {"sv", "av", "rv", "svv"})
+    EXPECT_EQ(type(keys), R"({"command":"vent"})") << keys;
+  EXPECT_EQ(type("qv"), "leave");
+  EXPECT_EQ(type("vs"), R"({"command":"vent"})");
+}
+
 TEST_F(KeyDialogueTest, ReleaseNeedsConfirmation) {
   EXPECT_EQ(type("r"), "");
   EXPECT_NE(dialogue_.question().find("held parts drop"), std::string::npos);
