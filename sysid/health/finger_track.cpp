@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <list>
 #include <string_view>
 #include <utility>
 
@@ -91,23 +92,29 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
 }
 
 std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
-  // Maps each label to the start time and the order of its runs.
-  std::map<std::string, std::pair<std::string, std::size_t>> begins;
-  std::size_t order = 0;
+  // The order of the labels agrees with the order in each track. A run that only one finger has is placed
+  // before the next run of this finger.
+  std::list<std::string> order;
+  std::map<std::string, std::list<std::string>::iterator> places;
+  std::map<std::string, std::string> begins;
   for (const FingerTrack& track : tracks) {
-    for (const RunGroup& group : track.groups) {
-      auto& begin = begins.try_emplace(group.label, group.runs.front()->started_at, order++).first->second;
-      begin.first = std::min(begin.first, group.runs.front()->started_at);
+    auto next = order.end();
+    for (auto group = track.groups.rbegin(); group != track.groups.rend(); ++group) {
+      const auto [place, is_new] = places.try_emplace(group->label);
+      if (is_new) place->second = order.insert(next, group->label);
+      next = place->second;
+      const std::string& begin = group->runs.front()->started_at;
+      std::string& earliest = begins.try_emplace(group->label, begin).first->second;
+      earliest = std::min(earliest, begin);
     }
   }
-  std::vector<std::pair<std::pair<std::string, std::size_t>, std::string>> sorted;
-  sorted.reserve(begins.size());
-  for (const auto& [label, begin] : begins) sorted.emplace_back(begin, label);
-  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::string> labels(order.begin(), order.end());
+  std::stable_sort(labels.begin(), labels.end(),
+                   [&](const std::string& a, const std::string& b) { return begins.at(a) < begins.at(b); });
   std::map<std::string, std::size_t> moments;
-  for (const auto& [begin, label] : sorted) moments.emplace(label, moments.size());
+  for (const std::string& label : labels) moments.emplace(label, moments.size());
   for (FingerTrack& track : tracks) {
-    for (RunGroup& group : track.groups) group.moment = moments[group.label];
+    for (RunGroup& group : track.groups) group.moment = moments.at(group.label);
   }
   return moments.size();
 }

@@ -56,12 +56,18 @@ void note_times(const std::vector<RecordedEvent>& events, const std::string& cha
   }
 }
 
+/// Returns the last valid reading up to sample i.
+double last_reading(const sysid::Log& log, std::size_t i) {
+  while (i > 0 && !std::isfinite(log.displacement_mm[i])) --i;
+  return log.displacement_mm[i];
+}
+
 /// Marks samples before a contact as `neither`. The marked range starts after the last sample at which the
 /// finger was clear of the object.
 void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>& at) {
   std::size_t i = 0;
   while (i + 1 < log.size() && log.time_s[i] < contact_s) ++i;
-  const double away = away_from(log.displacement_mm[i]);
+  const double away = away_from(last_reading(log, i));
   for (; i > 0 && at[i - 1] == Part::free && !(log.displacement_mm[i - 1] < away); --i)
     at[i - 1] = Part::neither;
 }
@@ -82,7 +88,7 @@ class Walk {
       if (!event.channel.empty() && event.channel != log_.channel) continue;
       const Phase before = phase_;
       phase_ = after(event, phase_);
-      if (phase_ == Phase::touching && before == Phase::free) touch_mm_ = touch_reading(i);
+      if (phase_ == Phase::touching && before == Phase::free) touch_mm_ = last_reading(log_, i);
       if (phase_ == Phase::holding && before != Phase::holding) held_kpa_ = log_.pressure_command_kpa[i];
     }
     const double command_kpa = log_.pressure_command_kpa[i];
@@ -99,10 +105,6 @@ class Walk {
   }
 
  private:
-  [[nodiscard]] double touch_reading(std::size_t i) const {
-    while (i > 0 && !std::isfinite(log_.displacement_mm[i])) --i;
-    return log_.displacement_mm[i];
-  }
   [[nodiscard]] bool is_away(double mm) const {
     return mm < (std::isfinite(touch_mm_) ? away_from(touch_mm_) : away_mm);
   }

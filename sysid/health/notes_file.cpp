@@ -1,6 +1,7 @@
 #include "sysid/health/finger_health.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "base/files.h"
@@ -18,6 +19,17 @@ bool looks_like(const std::string& text, std::string_view shape) {
          });
 }
 
+/// Returns true if the text is an existing date, or an existing date with a time of day in UTC.
+bool is_date(const std::string& text) {
+  const bool timed = looks_like(text, "0000-00-00T00:00:00Z");
+  if (!timed && !looks_like(text, "0000-00-00")) return false;
+  const auto number = [&](std::size_t at, std::size_t digits) { return std::stoi(text.substr(at, digits)); };
+  const std::chrono::year_month_day day{std::chrono::year{number(0, 4)},
+                                        std::chrono::month{static_cast<unsigned>(number(5, 2))},
+                                        std::chrono::day{static_cast<unsigned>(number(8, 2))}};
+  return day.ok() && (!timed || (number(11, 2) < 24 && number(14, 2) < 60 && number(17, 2) < 60));
+}
+
 }  // namespace
 
 std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
@@ -31,8 +43,7 @@ std::optional<std::vector<Note>> read_notes(const std::string& path, std::string
     Note note{reader.text("date"), reader.optional_text("finger").value_or(""),
               reader.text(reader.name_in_use("action", "mended")),
               document.problem(reader.where("finger"), {})};
-    if (reader.good("date") && !looks_like(note.date, "0000-00-00") &&
-        !looks_like(note.date, "0000-00-00T00:00:00Z"))
+    if (reader.good("date") && !is_date(note.date))
       reader.report("date", "this is not a date in UTC", "2026-11-03, or 2026-11-03T14:30:00Z");
     notes.push_back(std::move(note));
   }

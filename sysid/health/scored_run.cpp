@@ -24,9 +24,15 @@ using Json = nlohmann::ordered_json;
 
 namespace fs = std::filesystem;
 
+/// Returns the path without "." and "..", and without a separator at the end.
+fs::path plain(const std::string& path) {
+  const fs::path normal = fs::path(path).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 /// Returns the name of the folder or file to which a path leads.
 std::string name_of(const std::string& path) {
-  return fs::path(path).lexically_normal().filename().string();
+  return plain(path).filename().string();
 }
 
 bool is_run(const fs::path& path) {
@@ -178,7 +184,7 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
   for (std::size_t i = 0; i < unread.size(); ++i) {
     end_if_cancelled();
     if (on_recording) on_recording(i + 1, unread.size());
-    const fs::path path = fs::path(unread[i]).lexically_normal();
+    const fs::path path = plain(unread[i]);
     const auto [first, is_new] = path_of.try_emplace(name_of(unread[i]), path);
     if (is_new)
       score_one(unread[i], base_of, scores);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -104,6 +105,27 @@ TEST(GripScore, MissingReadingsGiveNoDisplacementIndicators) {
   for (const auto number : {HealthNumber::gain, HealthNumber::zero, HealthNumber::lag, HealthNumber::creep,
                             HealthNumber::loop_width, HealthNumber::contact})
     EXPECT_TRUE(std::isnan(score[number])) << sysid::info_of(number).id;
+}
+
+TEST(GripParts, AMissingReadingAtTheContactKeepsTheFreeMotion) {
+  Recording grip = grip_of({});
+  const std::vector<double> predicted(grip.channels[0].size(), 0.0);
+  const GripParts whole = parts_of(grip, 0, predicted, 60);
+  std::size_t missing = 0;
+  for (const RecordedEvent& event : grip.events) {
+    if (event.kind != "contact") continue;
+    std::size_t i = 0;
+    while (grip.channels[0].time_s[i] < event.time_s) ++i;
+    grip.channels[0].displacement_mm[i] = NAN;
+    ++missing;
+  }
+  ASSERT_EQ(missing, 1U);
+  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  const auto free_samples = [](const GripParts& all) {
+    return static_cast<double>(std::count(all.at.begin(), all.at.end(), Part::free));
+  };
+  EXPECT_GT(free_samples(whole), 100);
+  EXPECT_NEAR(free_samples(parts), free_samples(whole), 3);
 }
 
 TEST(GripParts, HeldLastsFromHoldingToRelease) {

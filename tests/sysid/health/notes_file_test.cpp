@@ -26,8 +26,10 @@ TEST(NotesFile, NotesAreSortedByDate) {
 
 TEST(NotesFile, InvalidNotesAreRefusedWithTheLocation) {
   for (const char* text :
-       {"notes:\n  - {date: yesterday, mended: x}\n", "notes:\n  - {date: 2026-11-3, mended: x}\n",
-        "notes:\n  - {date: 2026-11-03}\n", "notes:\n  - {date: 2026-11-03, mended: x, fingers: left}\n",
+       {"notes:\n  - {date: 2026-24-11, mended: x}\n", "notes:\n  - {date: 2026-02-30, mended: x}\n",
+        "notes:\n  - {date: 2026-11-03T24:00:00Z, mended: x}\n", "notes:\n  - {date: yesterday, mended: x}\n",
+        "notes:\n  - {date: 2026-11-3, mended: x}\n", "notes:\n  - {date: 2026-11-03}\n",
+        "notes:\n  - {date: 2026-11-03, mended: x, fingers: left}\n",
         "notes:\n  - {date: 2026-11-03, mended: x, action: x}\n", "note: []\n", ""}) {
     document::Problems problems;
     EXPECT_FALSE(notes_of(text, problems)) << text;

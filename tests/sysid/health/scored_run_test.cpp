@@ -127,6 +127,20 @@ TEST_F(FoundRuns, ASecondRecordingWithTheSameNameIsSkippedWithAReason) {
   EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + two + "/grip");
 }
 
+TEST_F(FoundRuns, ASeparatorAtTheEndOfAPathDoesNotChangeTheName) {
+  const std::string a = run("a", "") + "/", b = run("b", "") + "/";
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const RunScores found =
+      score_runs(find_runs({a, b, folder.string() + "/b"}), [&](const std::string&) { return &base; }, {});
+  EXPECT_TRUE(found.skipped.empty());
+  ASSERT_EQ(found.runs.size(), 2U);
+  EXPECT_EQ(found.runs[1].run, "b");
+  // A known recording is not read again.
+  EXPECT_TRUE(score_runs(
+                  {a, b}, [&](const std::string&) { return &base; }, found.runs)
+                  .runs.empty());
+}
+
 TEST_F(FoundRuns, MissingRecordingIsSkippedWithAReason) {
   const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
   const std::string missing = (folder / "missing").string();
