@@ -290,7 +290,7 @@ std::optional<Sequence> load_sequence(const std::string& path, document::Problem
                                       std::span<const Argument> arguments) {
   const std::size_t before = problems.size();
   const document::Document document = document::parse_file(path, problems);
-  if (document.root.kind == document::Node::Kind::null) return std::nullopt;
+  if (!document.complete && document.root.kind == document::Node::Kind::null) return std::nullopt;
   auto sequence = read_sequence(document, problems, arguments);
   return problems.size() == before ? std::move(sequence) : std::nullopt;
 }

@@ -137,6 +137,8 @@ class Baseline(bench.BenchTest):
                 (["--rig", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),
                 (["--rig-channel", "left", "--data", "log.csv", "--out", "base"], 2, "requires --rig"),
                 (["--rig", free, "--rig-channel", "left", "--experiments", "dance", "--out", "base"], 2, "dance"),
+                (["--rig", free, "--rig-channel", "left", "--yes", "--gauge", "nowhere.csv", "--out", "base"], 4, "nowhere.csv"),
+                (["--rig", free, "--rig-channel", "left", "--yes", "--model", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),
                 (["--out", "base"], 2, "needs --rig or --data"),
                 (["--check", "config"], 3, "config is not a baseline")):
             with self.subTest(why):

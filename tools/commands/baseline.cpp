@@ -253,6 +253,19 @@ bool is_occupied(const BaselineOptions& options) {
   return fs::exists(options.out, none) && !fs::is_empty(options.out, none);
 }
 
+/// Returns an exit code if the model or the gauge readings for a rig cannot be used. A rig must not move
+/// before this check, because the recorded logs would be lost.
+std::optional<ExitCode> refuse_inputs(const BaselineOptions& options) {
+  if (options.rig.empty()) return std::nullopt;
+  if (!options.model.empty()) {
+    if (const auto model = read_rig_model(options.model); !model) return model.error();
+  }
+  if (!options.gauge.empty()) {
+    if (const auto gauge = read_gauge(options.gauge, unit_of_rigs()); !gauge) return gauge.error();
+  }
+  return std::nullopt;
+}
+
 ExitCode run(const BaselineOptions& options, const std::vector<std::string>& call) {
   if (options.data.empty() && options.rig.empty()) {
     if (options.check.size() == 1) return checked_again(options);
@@ -267,6 +280,7 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
   if (is_occupied(options))
     return fail(ExitCode::state_refused,
                 options.out + " already exists and is not changed: give the name of a new folder");
+  if (const auto code = refuse_inputs(options)) return *code;
   auto runs = options.rig.empty() ? recorded(options) : played(options);
   if (!runs) return runs.error();
   return keep(options, std::move(*runs), call);

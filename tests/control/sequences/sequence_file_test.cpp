@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/files.h"
 #include "tests/control/settings_fixture.h"
 #include "tests/support/files.h"
 
@@ -138,6 +139,17 @@ std::string with_steps(int count) {
 /// ", verify: {...}" with the leading comma.
 std::string with_verify(const std::string& verify) {
   return with_step("grip: {pressure_kpa: 5, settle_s: 0" + verify + ", timeout_s: 9, on_fail: vent}");
+}
+
+TEST(SequenceFile, AnEmptyFileIsRefusedWithAReason) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/empty.yaml";
+  for (const char* const text : {"", "# nothing\n", "\n---\n"}) {
+    ASSERT_TRUE(write_file(path, text));
+    document::Problems problems;
+    EXPECT_FALSE(load_sequence(path, problems)) << text;
+    EXPECT_NE(problems.format().find("found nothing"), std::string::npos) << problems.format();
+  }
 }
 
 struct Broken {
