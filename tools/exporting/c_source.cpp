@@ -130,11 +130,19 @@ std::string numbered(std::string_view text, std::size_t number) {
   return out;
 }
 
+/// Returns true if the exported functions of a model with this name could have the name of a function in a
+/// fragment.
+bool is_in_use(const std::string& name) {
+  return name == "body" || name == "mode" || name == "play" || name == "two_way_lag" ||
+         c_blocks().contains(name);
+}
+
 std::string c_name(const std::string& name) {
   std::string valid;
   for (const char c : name) valid += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  return valid.empty() || std::isdigit(static_cast<unsigned char>(valid.front())) != 0 ? "model_" + valid
-                                                                                       : valid;
+  const bool is_free =
+      !valid.empty() && std::isdigit(static_cast<unsigned char>(valid.front())) == 0 && !is_in_use(valid);
+  return is_free ? valid : "model_" + valid;
 }
 
 class Generator {

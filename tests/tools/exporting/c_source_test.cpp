@@ -34,6 +34,11 @@ TEST(CSource, ReplacesCharactersThatAreInvalidInCNamesAndComments) {
   ASSERT_TRUE(source);
   EXPECT_EQ(source->name, "model_7____int_x_");
   EXPECT_EQ(source->text.find("*/ int"), std::string::npos);
+  // The functions of the model must not have the names of the functions of a block.
+  for (const char* const name : {"bouc_wen", "body", "two_way_lag"}) {
+    model.name = name;
+    EXPECT_EQ(c_source(model, 0.001, 60, "test").value().name, std::string("model_") + name);
+  }
 }
 
 TEST(CSource, ErrorNamesABlockWithoutCImplementation) {
