@@ -258,7 +258,8 @@ void Site::show(const Request& request, Response& response) {
   if (!reply_.disk->done()) return put_error(response, 503, disk_timeout_message);
   const auto& file = reply_.disk->file();
   if (!file)
-    return put_error(response, 404, "the file does not exist, or files of this kind cannot be shown");
+    return put_error(response, 404,
+                     "the file does not exist, is larger than 16 MiB, or has a kind that cannot be shown");
   replace_header(response, "Content-Security-Policy", recording_policy);
   const std::string type(content_type_of(name));
   if (file->size == 0) return response.set_content("", type);

@@ -283,6 +283,8 @@ function showSequences(sequences) {
   const select = $("sequence");
   const chosen = select.value;
   select.replaceChildren(...shown.sequences.map(({name}) => new Option(name, name, false, name === chosen)));
+  // Another sequence must not take the place of a sequence that was removed or has become faulty.
+  if (chosen) select.value = chosen;
   showParameters();
 }
 
@@ -292,6 +294,10 @@ const units = {kpa: "kPa", mm_per_s: "mm/s", kpa_per_s: "kPa/s"};
 function showParameters() {
   const sequence = shown.sequences.find(({name}) => name === $("sequence").value);
   setText($("about"), sequence ? sequence.about : "");
+  // A new list of sequences must not change the typed values.
+  const typed = shown.parametersOf === $("sequence").value ?
+    Object.fromEntries([...$("parameters").querySelectorAll("input")].map((input) => [input.name, input.value])) : {};
+  shown.parametersOf = $("sequence").value;
   $("parameters").replaceChildren(...(sequence ? sequence.parameters : []).map((parameter) => {
     const line = make("div");
     const unit = units[parameter.unit] || parameter.unit;
@@ -300,7 +306,7 @@ function showParameters() {
     input.id = `parameter-${parameter.name}`;
     label.htmlFor = input.id;
     Object.assign(input, {type: "number", name: parameter.name, min: parameter.lower, max: parameter.upper, step: "any",
-      value: parameter.default, required: true});
+      value: typed[parameter.name] ?? parameter.default, required: true});
     line.append(label, input);
     return line;
   }));
