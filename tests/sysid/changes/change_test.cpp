@@ -680,7 +680,9 @@ TEST(Change, WarnsOfALogThatWasRecordedInAClosedLoop) {
   }
   const auto warnings_of = [](const std::vector<Log>& logs) {
     std::string all;
-    for (const std::string& warning : diagnose_change({log_of({}, 1)}, logs).value().warnings) all += warning;
+    const auto diagnosis = diagnose_change({log_of({}, 1)}, logs);
+    EXPECT_TRUE(diagnosis) << diagnosis.error();
+    for (const std::string& warning : diagnosis->warnings) all += warning;
     return all;
   };
   EXPECT_NE(warnings_of(later).find("(closed loop) in log5."), std::string::npos);
