@@ -113,6 +113,9 @@ class Page(web.WebTest):
         told = self.start_web()
         seen = self.browse(told)
         seen.wait_for_state("idle")
+        seen.wait("sequences", lambda: "pick_stone" in seen.text("sequence"))
+        seen.choose("sequence", "pick_stone")
+        seen.type_in("parameter-squeeze_kpa", "4.25")
         self.softgripd.kill()
         seen.wait_for_state("no daemon")
         self.assertIn("does not respond", seen.text("alarm"))
@@ -127,6 +130,9 @@ class Page(web.WebTest):
         again = web.Web(self.folder, name="softgrip-web-again", port=told.port)
         self.processes.append(again)
         seen.wait_for_state("idle")
+        seen.wait("sequences", lambda: "pick_stone" in seen.text("sequence"))
+        for element, value in (("sequence", "pick_stone"), ("parameter-squeeze_kpa", "4.25")):
+            self.assertEqual(seen.run(f"return document.getElementById('{element}').value"), value)
 
     def test_a_page_of_another_site_can_neither_command_nor_read(self):
         told = self.start_web(access="without_token: operate")
