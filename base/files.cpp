@@ -117,6 +117,11 @@ tl::expected<std::string, std::string> read_file(const std::string& path, std::s
 
 namespace fs = std::filesystem;
 
+std::string plain_path(const std::string& path) {
+  const fs::path normal = fs::path(path).lexically_normal();
+  return (normal.has_filename() ? normal : normal.parent_path()).string();
+}
+
 ScratchFolder::ScratchFolder() {
   std::error_code none;
   const fs::path temporary = fs::temp_directory_path(none);

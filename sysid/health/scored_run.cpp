@@ -24,15 +24,9 @@ using Json = nlohmann::ordered_json;
 
 namespace fs = std::filesystem;
 
-/// Returns the path without "." and "..", and without a separator at the end.
-fs::path plain(const std::string& path) {
-  const fs::path normal = fs::path(path).lexically_normal();
-  return normal.has_filename() ? normal : normal.parent_path();
-}
-
 /// Returns the name of the folder or file to which a path leads.
 std::string name_of(const std::string& path) {
-  return plain(path).filename().string();
+  return fs::path(plain_path(path)).filename().string();
 }
 
 bool is_run(const fs::path& path) {
@@ -180,11 +174,11 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     if (!done.contains(name_of(path))) unread.push_back(path);
   }
   RunScores scores;
-  std::map<std::string, fs::path> path_of;
+  std::map<std::string, std::string> path_of;
   for (std::size_t i = 0; i < unread.size(); ++i) {
     end_if_cancelled();
     if (on_recording) on_recording(i + 1, unread.size());
-    const fs::path path = plain(unread[i]);
+    const std::string path = plain_path(unread[i]);
     const auto [first, is_new] = path_of.try_emplace(name_of(unread[i]), path);
     if (is_new)
       score_one(unread[i], base_of, scores);

@@ -66,9 +66,8 @@ Campaign read_campaign(const std::vector<std::string>& paths, document::Problems
       agreed.output_unit_of = path;
     }
     if (folder) {
-      const fs::path run = fs::path(given).lexically_normal();
-      log->name = (run.has_filename() ? run.filename() : run.parent_path().filename()).string() +
-                  (log->channel.empty() ? "" : "/" + log->channel);
+      log->name =
+          fs::path(plain_path(given)).filename().string() + (log->channel.empty() ? "" : "/" + log->channel);
     }
     campaign.logs.push_back(std::move(*log));
   }

@@ -63,8 +63,7 @@ tl::expected<Recording, std::string> read_recording(const std::string& path, doc
   if (!text) return tl::unexpected(text.error());
 
   Recording recording;
-  const fs::path named = fs::path(path).lexically_normal();
-  recording.name = (named.has_filename() ? named : named.parent_path()).filename().string();
+  recording.name = fs::path(plain_path(path)).filename().string();
   LogOptions options;
   options.require_motion = false;
   options.need_readings = false;

@@ -88,6 +88,13 @@ TEST_F(FilesTest, OpenRegularInRefusesASymbolicLink) {
   EXPECT_TRUE(open_regular(at("link")));
 }
 
+TEST(PlainPath, ASeparatorAtTheEndIsRemoved) {
+  EXPECT_EQ(plain_path("runs/grip/"), "runs/grip");
+  EXPECT_EQ(plain_path("./runs/../runs/grip.csv"), "runs/grip.csv");
+  EXPECT_EQ(plain_path("grip"), "grip");
+  EXPECT_EQ(plain_path("/"), "/");
+}
+
 TEST(ScratchFolder, TheDestructorRemovesTheFolderAndAllFiles) {
   std::string path;
   {

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/files.h"
 #include "base/numbers.h"
 #include "tools/importing/import_run.h"
 
@@ -73,8 +74,7 @@ tl::expected<std::vector<sysid::ColumnCode>, std::string> codes_of(const std::ve
 /// Returns the name of the log that is imported from a file or folder: day1.csv for "day1.csv.gz" and for the
 /// folder "day1".
 std::string log_name(const std::string& file) {
-  fs::path path = fs::path(file).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
+  fs::path path = plain_path(file);
   if (path.extension() == ".gz") path = path.stem();
   std::error_code error;
   return (fs::is_directory(file, error) ? path.filename() : path.stem()).string() + ".csv";
