@@ -92,31 +92,31 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
 }
 
 std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
+  struct Moment {
+    std::string begin;
+    std::size_t index = 0;
+  };
   // The order of the labels agrees with the order in each track. A run that only one finger has is placed
   // before the next run of this finger.
-  std::list<std::string> order;
-  std::map<std::string, std::list<std::string>::iterator> places;
-  std::map<std::string, std::string> begins;
+  std::list<Moment> in_order;
+  std::map<std::string, std::list<Moment>::iterator> places;
   for (const FingerTrack& track : tracks) {
-    auto next = order.end();
+    auto next = in_order.end();
     for (auto group = track.groups.rbegin(); group != track.groups.rend(); ++group) {
-      const auto [place, is_new] = places.try_emplace(group->label);
-      if (is_new) place->second = order.insert(next, group->label);
-      next = place->second;
       const std::string& begin = group->runs.front()->started_at;
-      std::string& earliest = begins.try_emplace(group->label, begin).first->second;
-      earliest = std::min(earliest, begin);
+      const auto [place, is_new] = places.try_emplace(group->label);
+      if (is_new) place->second = in_order.insert(next, Moment{begin});
+      next = place->second;
+      next->begin = std::min(next->begin, begin);
     }
   }
-  std::vector<std::string> labels(order.begin(), order.end());
-  std::stable_sort(labels.begin(), labels.end(),
-                   [&](const std::string& a, const std::string& b) { return begins.at(a) < begins.at(b); });
-  std::map<std::string, std::size_t> moments;
-  for (const std::string& label : labels) moments.emplace(label, moments.size());
+  in_order.sort([](const Moment& a, const Moment& b) { return a.begin < b.begin; });
+  std::size_t moments = 0;
+  for (Moment& one : in_order) one.index = moments++;
   for (FingerTrack& track : tracks) {
-    for (RunGroup& group : track.groups) group.moment = moments.at(group.label);
+    for (RunGroup& group : track.groups) group.moment = places.at(group.label)->index;
   }
-  return moments.size();
+  return moments;
 }
 
 }  // namespace softgrip::sysid::health

@@ -29,16 +29,30 @@ Eigen::VectorXd beyond(const Eigen::MatrixXd& columns, const Eigen::VectorXd& ta
 
 }  // namespace
 
-bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading) {
-  constexpr Eigen::Index order = 3, fewest = 50;
-  std::vector<double> commands, readings;
+LoopSeries finite_samples(const std::vector<double>& command, const std::vector<double>& reading,
+                          const std::vector<double>& response) {
+  LoopSeries series;
   for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
     if (!std::isfinite(command[i]) || !std::isfinite(reading[i])) continue;
-    commands.push_back(command[i]);
-    readings.push_back(reading[i]);
+    if (!response.empty() && !std::isfinite(response[i])) continue;
+    series.command.push_back(command[i]);
+    series.reading.push_back(reading[i]);
+    if (!response.empty()) series.response.push_back(response[i]);
   }
-  const Eigen::VectorXd u = scaled(commands), y = scaled(readings);
-  const Eigen::Index rows = std::min(u.size(), y.size()) - order;
+  return series;
+}
+
+ScaledPair scaled_pair(const std::vector<double>& command, const std::vector<double>& reading) {
+  const LoopSeries series = finite_samples(command, reading);
+  ScaledPair pair{scaled(series.command), scaled(series.reading)};
+  if (pair.command.size() == 0 || pair.reading.size() == 0) return {};
+  return pair;
+}
+
+bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading) {
+  constexpr Eigen::Index order = 3, fewest = 50;
+  const auto [u, y] = scaled_pair(command, reading);
+  const Eigen::Index rows = u.size() - order;
   if (rows < fewest ||
       third_difference_noise({u.data(), static_cast<std::size_t>(u.size())}) < limits::planned_roughness)
     return false;

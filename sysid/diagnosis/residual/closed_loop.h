@@ -1,9 +1,31 @@
 #pragma once
-// Detects that a log was recorded in a closed loop.
+// Prepares the signals of a control loop, and detects that a log was recorded in a closed loop.
 
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace softgrip::sysid {
+
+/// Signals of a control loop, without gaps. `response` is empty, or contains the readings that a model
+/// predicts.
+struct LoopSeries {
+  std::vector<double> command, reading, response;
+};
+
+/// Returns the samples in which all series are finite.
+/// @param response  as long as the other series, or empty
+[[nodiscard]] LoopSeries finite_samples(const std::vector<double>& command,
+                                        const std::vector<double>& reading,
+                                        const std::vector<double>& response = {});
+
+/// Command and reading with zero mean and unit standard deviation.
+struct ScaledPair {
+  Eigen::VectorXd command, reading;
+};
+
+/// Returns the samples in which both series are finite. The result is empty if one of the series is constant.
+[[nodiscard]] ScaledPair scaled_pair(const std::vector<double>& command, const std::vector<double>& reading);
 
 /// Returns true if the command depends on the readings. One of two conditions must hold at the level
 /// limits::strict_probability. Either past readings improve the prediction of the command from its own past

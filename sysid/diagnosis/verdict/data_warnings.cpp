@@ -185,7 +185,7 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
 }
 
 void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs,
-                     const std::vector<std::vector<double>>& responses) {
+                     const std::function<std::vector<std::vector<double>>()>& responses) {
   if (!contains_rest(logs)) {
     d.not_tested.emplace(causes::SensorDrift::id, recording_for(Appears::at_rest));
     reject_drift(d);
@@ -197,10 +197,11 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs,
   d.warnings.emplace_back(
       "The command depends on the readings (closed loop), so the command contains the noise of the readings. "
       "A simulation with this command is therefore uncertain");
+  const std::vector<std::vector<double>> modelled = responses();
   std::vector<std::string> bands;
   for (std::size_t k = 0; k < logs.size(); ++k) {
     const auto stem = shown_stiction(logs[k].pressure_command_kpa, logs[k].displacement_mm,
-                                     responses.empty() ? std::vector<double>() : responses[k]);
+                                     modelled.empty() ? std::vector<double>() : modelled[k]);
     if (!stem) return;
     bands.push_back(significant(stem->band, 2));
   }

@@ -8,6 +8,7 @@
 // number of readings. Within the response time of a finger, the mean of several readings contains as much
 // information as the readings.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,10 +53,11 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
 /// - If every log was recorded in a closed loop, a warning is added.
 /// - If, in addition, a sticking valve explains the readings of each loop best (shown_stiction()),
 ///   valve_deadband is named. The causes of the search are then moved to `partial`.
-/// @param responses  readings that the refitted model predicts, one value per row of each log. Empty: the
-/// hysteresis of the model is not compared with a sticking valve.
+/// @param responses  returns the readings that the refitted model predicts, one value per row of each log. It
+/// is called only for closed loops. If the result is empty, the hysteresis of the model is not compared with
+/// a sticking valve.
 void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs,
-                     const std::vector<std::vector<double>>& responses);
+                     const std::function<std::vector<std::vector<double>>()>& responses);
 
 /// Longest time over which consecutive readings are averaged, in units of time_unit_s(). For a finger, it is
 /// half of the sampling interval at 100 Hz.

@@ -54,7 +54,7 @@ class Diagnostician {
 
   tl::expected<Diagnosis, std::string> run() {
     if (auto done = judge_displacement(); !done) return Failure(done.error());
-    correct_by_logs(d_, logs_, responses());
+    correct_by_logs(d_, logs_, [this] { return responses(); });
     if (d_.in_valve) take_out_named(*d_.in_valve);
     return std::move(d_);
   }

@@ -1,6 +1,5 @@
 #include "sysid/diagnosis/verdict/loop_phase.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -12,40 +11,6 @@
 
 namespace softgrip::sysid {
 namespace {
-
-struct Series {
-  std::vector<double> command, reading, response;
-};
-
-/// Returns the samples in which all series are finite. The response may be empty.
-Series finite_samples(const std::vector<double>& command, const std::vector<double>& reading,
-                      const std::vector<double>& response = {}) {
-  Series series;
-  for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
-    if (!std::isfinite(command[i]) || !std::isfinite(reading[i])) continue;
-    if (!response.empty() && !std::isfinite(response[i])) continue;
-    series.command.push_back(command[i]);
-    series.reading.push_back(reading[i]);
-    if (!response.empty()) series.response.push_back(response[i]);
-  }
-  return series;
-}
-
-struct Pair {
-  Eigen::VectorXd command, reading;
-};
-
-/// Returns the deviations of command and reading from their means, for the samples in which both are finite.
-Pair deviations(const std::vector<double>& command, const std::vector<double>& reading) {
-  const auto [u, y, unused] = finite_samples(command, reading);
-  const auto from_mean = [](const std::vector<double>& values) {
-    Eigen::VectorXd v =
-        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    if (v.size() > 0) v.array() -= v.mean();
-    return v;
-  };
-  return {from_mean(u), from_mean(y)};
-}
 
 /// Returns the smallest positive lag at which the correlation sum a(t) b(t + lag) changes its sign,
 /// interpolated between samples.
@@ -64,15 +29,15 @@ std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::Vect
 
 /// Returns true if the correlation of command and reading at lag 0 is positive.
 bool rise_together(const std::vector<double>& command, const std::vector<double>& reading) {
-  const auto [u, y] = deviations(command, reading);
+  const auto [u, y] = scaled_pair(command, reading);
   return u.dot(y) > 0;
 }
 
 }  // namespace
 
 std::optional<double> phase_ratio(const std::vector<double>& command, const std::vector<double>& reading) {
-  const auto [u, y] = deviations(command, reading);
-  if (!(u.squaredNorm() > 0) || !(y.squaredNorm() > 0)) return std::nullopt;
+  const auto [u, y] = scaled_pair(command, reading);
+  if (u.size() == 0) return std::nullopt;
   const std::optional<double> right = first_crossing(u, y), left = first_crossing(y, u);
   if (!right || !left || *right + *left == 0) return std::nullopt;
   return std::abs(*left - *right) / (*left + *right);

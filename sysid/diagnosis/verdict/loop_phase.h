@@ -9,7 +9,7 @@
 //   Then the hysteresis of the model is compared, too. If they do not rise together, the controller acts
 //   against a disturbance, and a fit of the model to this record is meaningless.
 // - If, in addition, the cross-correlation is even (phase shift of 0 degrees), the reading follows the
-//   command without a delay that is visible. Then a curved characteristic is compared, too. A curved
+//   command without a visible delay. Then a curved characteristic is compared, too. A curved
 //   characteristic does not shift the phase. A sticking valve in a process that settles shifts it by 90
 //   degrees: A. Horch, "A simple method for detection of stiction in control valves", Control Engineering
 //   Practice 7 (1999) 1221-1231.

@@ -15,6 +15,10 @@
 namespace softgrip::sysid::data_warnings_test {
 namespace {
 
+std::vector<std::vector<double>> no_responses() {
+  return {};
+}
+
 NamedCause named(std::string_view id) {
   NamedCause cause;
   cause.cause = *find_cause(id);
@@ -74,17 +78,17 @@ std::vector<Log> loop(double band, double wave) {
 
 TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
   Diagnosis d = with({"sensor_drift", "transport_delay"});
-  correct_by_logs(d, planned(0), {});
+  correct_by_logs(d, planned(0), no_responses);
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"transport_delay"});
   EXPECT_EQ(ids(d.partial), std::vector<std::string>{"sensor_drift"});
   EXPECT_EQ(d.verdict, Verdict::partly_explained);
   EXPECT_NE(d.not_tested.at("sensor_drift").find("rest"), std::string::npos);
   Diagnosis alone = with({"sensor_drift"});
-  correct_by_logs(alone, planned(2.9), {});
+  correct_by_logs(alone, planned(2.9), no_responses);
   EXPECT_TRUE(alone.causes.empty());
   EXPECT_EQ(alone.verdict, Verdict::unexplained);
   Diagnosis shown = with({"sensor_drift"});
-  correct_by_logs(shown, planned(3.1), {});
+  correct_by_logs(shown, planned(3.1), no_responses);
   EXPECT_EQ(ids(shown.causes), std::vector<std::string>{"sensor_drift"});
   EXPECT_EQ(shown.verdict, Verdict::cause_found);
   EXPECT_TRUE(shown.not_tested.empty());
@@ -92,7 +96,7 @@ TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
 
 TEST(UntestedCauses, ClosedLoopNamesAStickingValveWithItsBand) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
-  correct_by_logs(d, loop(0.3, 0), {});
+  correct_by_logs(d, loop(0.3, 0), no_responses);
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"valve_deadband"});
   EXPECT_EQ(ids(d.partial), std::vector<std::string>{"rate_dependent_hysteresis"});
   ASSERT_EQ(d.warnings.size(), 2U);
@@ -102,7 +106,7 @@ TEST(UntestedCauses, ClosedLoopNamesAStickingValveWithItsBand) {
 
 TEST(UntestedCauses, DisturbedClosedLoopKeepsTheNamedCauses) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
-  correct_by_logs(d, loop(0, 1), {});
+  correct_by_logs(d, loop(0, 1), no_responses);
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
   ASSERT_EQ(d.warnings.size(), 1U);
   EXPECT_NE(d.warnings.front().find("closed loop"), std::string::npos);
@@ -127,9 +131,9 @@ TEST(UntestedCauses, HysteresisOfTheModelKeepsTheNamedCauses) {
     response.push_back(moved);
   }
   Diagnosis d = with({"rate_dependent_hysteresis"}), without = d;
-  correct_by_logs(d, {log}, {response});
+  correct_by_logs(d, {log}, [&] { return std::vector<std::vector<double>>{response}; });
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
-  correct_by_logs(without, {log}, {});
+  correct_by_logs(without, {log}, no_responses);
   EXPECT_EQ(ids(without.causes), std::vector<std::string>{"valve_deadband"});
 }
 
@@ -137,7 +141,7 @@ TEST(UntestedCauses, OnePlannedLogRulesOutAClosedLoop) {
   Diagnosis d = with({"rate_dependent_hysteresis"});
   std::vector<Log> logs = loop(0.3, 0);
   logs.push_back(planned(5).front());
-  correct_by_logs(d, logs, {});
+  correct_by_logs(d, logs, no_responses);
   EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
   EXPECT_TRUE(d.warnings.empty());
 }
