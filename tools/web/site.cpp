@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/metrics.h"
+#include "tools/web/recordings.h"
 
 namespace softgrip::web {
 
@@ -258,8 +259,11 @@ void Site::show(const Request& request, Response& response) {
   if (!reply_.disk->done()) return put_error(response, 503, disk_timeout_message);
   const auto& file = reply_.disk->file();
   if (!file)
-    return put_error(response, 404,
-                     "the file does not exist, is larger than 16 MiB, or has a kind that cannot be shown");
+    return put_error(
+        response, 404,
+        fmt::format("the file does not exist, is larger than {} MiB, or has a kind that cannot be "
+                    "shown",
+                    Recordings::largest_file >> 20U));
   replace_header(response, "Content-Security-Policy", recording_policy);
   const std::string type(content_type_of(name));
   if (file->size == 0) return response.set_content("", type);
