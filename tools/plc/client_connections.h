@@ -28,7 +28,7 @@ struct ClientConnection {
   Nanoseconds last_request_at = 0;
   bool has_requested = false;    ///< true: the client has sent a complete request
   bool partial_request = false;  ///< true: the client has sent a part of a request
-  /// true: the client may have sent its next request before its silence was detected, so this request cannot
+  /// true: the client may have sent its next requests before a silence was detected, so these requests cannot
   /// start a sequence
   bool start_blocked = false;
   /// The register values that this connection has written. Values of another connection are stored
@@ -58,8 +58,9 @@ class ClientConnections {
   /// Removes each connection except `except` that has sent a part of a request. Must be called after a write
   /// of the connection `except`, because the partial requests are older than this write.
   void drop_partial_requests(Id except);
-  /// Ensures that the next request of each connection cannot start a sequence. Must be called after a silence
-  /// of the client, because the next request may be older than the stop or vent that followed the silence.
+  /// Ensures that the requests that each connection receives together next cannot start a sequence. Must be
+  /// called after a silence of a client, because these requests may be older than the stop or vent that
+  /// followed the silence.
   void block_starts() noexcept;
   /// Removes every connection that has sent no request for the time `longest`.
   void drop_idle(Nanoseconds now, Nanoseconds longest);

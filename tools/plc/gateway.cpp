@@ -72,22 +72,25 @@ modbus::Reply Gateway::serve(ClientConnections::Id id, const modbus::Request& re
         connections_.update_heartbeat(connection, at(connection.registers, Name::master_heartbeat));
     if (heartbeat_changed) {
       check_heartbeat(now);
-      heartbeat_monitor_.on_change(now);
+      heartbeat_monitor_.on_change(connection.address, now);
     }
     if (writes(request.pdu, map.at(Name::command_counter))) process_counter(connection, now);
   }
-  // The client sends its next request after it has received this response. The next request is therefore
-  // newer than the silence of the client and may start a sequence.
-  connection.start_blocked = false;
   modbus::Reply reply;
   reply.pieces.push_back(
       {{}, modbus::frame_on(modbus::Wire::tcp, request.transaction, request.unit, answer.pdu)});
   return reply;
 }
 
+void Gateway::on_requests_served(ClientConnections::Id id) {
+  if (ClientConnection* const connection = connections_.find(id)) connection->start_blocked = false;
+}
+
 void Gateway::process_counter(ClientConnection& connection, Nanoseconds now) {
   Handshake::Entry entry{at(connection.registers, Name::command_counter), command_in(connection.registers)};
-  if (connection.start_blocked && entry.command.is(CommandCode::start)) entry.refusal = Reason::client_silent;
+  const bool silent = heartbeat_monitor_.state_of(connection.address, now) == HeartbeatMonitor::State::silent;
+  if ((connection.start_blocked || silent) && entry.command.is(CommandCode::start))
+    entry.refusal = Reason::client_silent;
   const int ahead = handshake_.ahead(entry.counter);
   if (handshake_.write(connection.cursor, entry)) execute(entry, now);
   if (!connection.cursor.refused) {
@@ -102,8 +105,7 @@ void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {
   if (entry.refusal != Reason::none) return refuse(entry.refusal);
   auto request = request_of(settings_, entry.command);
   if (!request) return refuse(request.error());
-  const bool starts = entry.command.is(CommandCode::start);
-  if (starts && (heartbeat_monitor_.silent(now) || heartbeat_monitor_.stop_required()))
+  if (entry.command.is(CommandCode::start) && heartbeat_monitor_.stop_required())
     return refuse(Reason::client_silent);
   // Stop and vent are sent even to a daemon that has been silent for too long, because its lines may only be
   // delayed.
@@ -119,7 +121,9 @@ std::uint64_t Gateway::send(Json request) {
 }
 
 void Gateway::check_heartbeat(Nanoseconds now) {
-  if (heartbeat_monitor_.check(now)) reaction_covers_silence_ = false;
+  if (!heartbeat_monitor_.check(now)) return;
+  reaction_covers_silence_ = false;
+  handshake_.refuse_waiting(Reason::client_silent);
 }
 
 /// Sends the reaction to a silent client: stop, vent or release, as `when_silent` selects. Repeats it until a
@@ -214,9 +218,11 @@ void Gateway::write_registers(const ClientConnection& connection, Nanoseconds no
   set(Name::outcome, connection.cursor.refused ? Outcome::refused : handshake_.outcome());
   set(Name::reason, connection.cursor.refused ? Reason::not_next : handshake_.reason());
   set(Name::heartbeat, now / heartbeat_period);
-  set(Name::master, heartbeat_monitor_.silent(now) || heartbeat_monitor_.stop_required() ? 2
-                    : heartbeat_monitor_.active()                                        ? 1
-                                                                                         : 0);
+  using State = HeartbeatMonitor::State;
+  const State state = heartbeat_monitor_.stop_required()
+                          ? State::silent
+                          : heartbeat_monitor_.state_of(connection.address, now);
+  set(Name::master, state == State::silent ? 2 : state == State::alive ? 1 : 0);
 }
 
 }  // namespace softgrip::plc

@@ -32,6 +32,10 @@ class Gateway {
   /// command to the daemon.
   [[nodiscard]] modbus::Reply serve(ClientConnections::Id id, const modbus::Request& request,
                                     Nanoseconds now);
+  /// Allows the connection `id` to start a sequence again after a silence of a client. Must be called when
+  /// all received requests of the connection have been served. Each later request is assumed to be newer than
+  /// the silence, because a client normally sends it after the responses.
+  void on_requests_served(ClientConnections::Id id);
   /// Processes the waiting command and the silent clients. Must be called after the daemon's lines were
   /// processed, and at least every `max_update_period`.
   void update(Nanoseconds now);

@@ -1,46 +1,69 @@
 #pragma once
-// Detects that the client (Modbus master) is silent. After a silence, the reaction that the file selects
+// Detects that a client (Modbus master) is silent. After a silence, the reaction that the file selects
 // (stop, vent or release) is required until the daemon has confirmed it.
 
-#include <optional>
+#include <algorithm>
+#include <map>
+#include <string>
 
 #include "base/time.h"
 
 namespace softgrip::plc {
 
-/// Watches the heartbeat of the client, starting with the first change of the heartbeat. A client whose
-/// heartbeat never changes is not watched.
+/// Watches the heartbeat of each client, starting with the first change of this heartbeat. A client is
+/// identified by its numeric address. A client whose heartbeat never changes is not watched.
 class HeartbeatMonitor {
  public:
+  enum class State { not_watched, alive, silent };
+
   explicit HeartbeatMonitor(Nanoseconds silence) noexcept : silence_(silence) {}
 
-  /// Notes that the heartbeat has changed. Must be called at each change of the client's heartbeat.
-  void on_change(Nanoseconds now) noexcept {
+  /// Notes that the heartbeat of a client has changed. Must be called at each change.
+  void on_change(const std::string& address, Nanoseconds now) {
     check(now);  // detects a silence that this heartbeat ends, before the next call of check()
-    last_change_ = now;
-    reported_ = false;
+    watched_[address] = {now, false};
   }
-  /// Returns true once per silence, at the first call after the silence has exceeded its limit. Must be
-  /// called several times within this limit.
+  /// Returns true once per silence of each client, at the first call after the silence has exceeded its
+  /// limit. Must be called several times within this limit.
   bool check(Nanoseconds now) noexcept {
-    if (reported_ || !silent(now)) return false;
-    reported_ = true;
-    stop_required_ = true;
-    return true;
+    bool found = false;
+    for (auto& [address, heartbeat] : watched_) {
+      if (heartbeat.reported || !is_silent(heartbeat, now)) continue;
+      heartbeat.reported = found = true;
+    }
+    stop_required_ = stop_required_ || found;
+    return found;
   }
-  [[nodiscard]] bool active() const noexcept { return last_change_.has_value(); }
-  [[nodiscard]] bool silent(Nanoseconds now) const noexcept {
-    return last_change_ && now - *last_change_ > silence_;
+  /// Returns the state of a client. The state of a client that is not watched is `silent` if any watched
+  /// client is silent, and otherwise `alive` if there is a watched client.
+  [[nodiscard]] State state_of(const std::string& address, Nanoseconds now) const {
+    const auto found = watched_.find(address);
+    if (found == watched_.end() && watched_.empty()) return State::not_watched;
+    const bool silent = found != watched_.end()
+                            ? is_silent(found->second, now)
+                            : std::any_of(watched_.begin(), watched_.end(),
+                                          [&](const auto& one) { return is_silent(one.second, now); });
+    return silent ? State::silent : State::alive;
   }
   /// Returns true from the detection of a silence until the call of confirm(). A new heartbeat does not
   /// change the result.
   [[nodiscard]] bool stop_required() const noexcept { return stop_required_; }
   void confirm() noexcept { stop_required_ = false; }
 
+  struct Heartbeat {
+    Nanoseconds last_change;
+    bool reported;  ///< true: check() has already reported the present silence
+  };
+  /// Returns the watched heartbeats by address. The list of allowed addresses limits their number.
+  [[nodiscard]] const std::map<std::string, Heartbeat>& watched() const noexcept { return watched_; }
+
  private:
+  [[nodiscard]] bool is_silent(const Heartbeat& heartbeat, Nanoseconds now) const noexcept {
+    return now - heartbeat.last_change > silence_;
+  }
+
   Nanoseconds silence_;
-  std::optional<Nanoseconds> last_change_;
-  bool reported_ = false;  // true: check() has already reported the present silence
+  std::map<std::string, Heartbeat> watched_;
   bool stop_required_ = false;
 };
 

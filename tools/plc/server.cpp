@@ -82,9 +82,13 @@ bool Server::serve(Session& session, net::PollSet::Events events, Nanoseconds no
   if (client == nullptr) return false;
   bool open = true;
   if (events.input() || events.hangup_or_error()) {
-    open = session.connection.receive(
-        [&](const modbus::Request& request) { return gateway_.serve(session.id, request, now); });
+    bool served = false;
+    open = session.connection.receive([&](const modbus::Request& request) {
+      served = true;
+      return gateway_.serve(session.id, request, now);
+    });
     client->partial_request = session.connection.half();
+    if (served && !client->partial_request) gateway_.on_requests_served(session.id);
   }
   return open && session.connection.send_due(modbus::Clock::now());
 }

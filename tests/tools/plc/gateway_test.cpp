@@ -38,6 +38,7 @@ class GatewayTest : public ::testing::Test {
     request.pdu.push_back(static_cast<std::uint8_t>(2 * values.size()));
     for (const std::uint16_t value : values) modbus::append_word(request.pdu, value);
     static_cast<void>(gateway_.serve(id, request, now_));
+    if (!pipelined_) gateway_.on_requests_served(id);
   }
   void write(Name name, std::uint16_t value) { write(plc_, name, {value}); }
   /// Writes a command and its counter in one block of registers, as a master does.
@@ -49,6 +50,7 @@ class GatewayTest : public ::testing::Test {
     modbus::append_word(request.pdu, settings_.registers.at(name));
     modbus::append_word(request.pdu, 1);
     const modbus::Reply reply = gateway_.serve(id, request, now_);
+    if (!pipelined_) gateway_.on_requests_served(id);
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return modbus::word_at(frame, frame.size() - 2);
   }
@@ -104,6 +106,8 @@ class GatewayTest : public ::testing::Test {
   Settings settings_ = shipped();
   Gateway gateway_{settings_};
   Nanoseconds now_ = 100 * ns_per_s;
+  /// True: the requests arrive together, so the gateway does not know that the master has read a response.
+  bool pipelined_ = false;
   ClientConnections::Id plc_ = connect();
   std::uint64_t last_id_ = 0;
 };
@@ -245,6 +249,44 @@ TEST_F(GatewayTest, ConstantValuesOnTwoConnectionsAreNoHeartbeat) {
   }
   EXPECT_EQ(read(Name::master), 2);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+}
+
+TEST_F(GatewayTest, AStartThatWasSentBeforeTheSilenceStaysRefusedBehindAnotherRequest) {
+  daemon_comes();
+  write(Name::command_counter, 0);
+  write(Name::master_heartbeat, 5);
+  pass(settings_.silence_s + 0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  accept();
+  // The heartbeat and the start were sent one after the other without waiting for a response, and both were
+  // delayed beyond the stop.
+  pipelined_ = true;
+  write(Name::master_heartbeat, 6);
+  put(plc_, 1, CommandCode::start);
+  EXPECT_TRUE(sent().empty());
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::client_silent));
+  gateway_.on_requests_served(plc_);
+  put(plc_, 2, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST_F(GatewayTest, EachMasterHasItsOwnHeartbeat) {
+  daemon_comes();
+  const ClientConnections::Id standby = connect("127.0.0.2");
+  write(Name::master_heartbeat, 5);
+  write(standby, Name::command_counter, {0});
+  for (std::uint16_t beat = 1; beat * 0.1 < settings_.silence_s + 0.2; ++beat) {
+    write(standby, Name::master_heartbeat, {beat});
+    pass(0.1);
+  }
+  EXPECT_EQ(sent(),
+            std::vector<std::string>{"stop"});  // the heartbeat of the standby does not hide the silence
+  EXPECT_EQ(read(standby, Name::master), 2);
+  accept();
+  EXPECT_EQ(read(standby, Name::master), 1);
+  EXPECT_EQ(read(Name::master), 2);
+  put(standby, 1, CommandCode::start);  // the standby replaces the silent master
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
 TEST_F(GatewayTest, RepeatsTheStopUntilADaemonConfirmsTheStop) {

@@ -138,10 +138,13 @@ struct World {
   // Data that the search records for its checks.
   int halts = 0;  // number of executed stops and vents, including stops because of a silent master
   std::optional<Frame> waiting;
-  bool watched = false;
+  struct Heartbeat {
+    bool watched = false;
+    bool stopped_since_beat = false;
+    int steps = 0;  // time since the last change of the heartbeat
+  };
+  std::array<Heartbeat, plcs> heartbeats{};
   bool owed = false;  // true: a master has become silent, and no daemon has executed a stop since then
-  bool stopped_since_beat = false;
-  int beat_steps = 0;
   Nanoseconds reacted_at = 0;
   std::string broken;
 
@@ -232,16 +235,13 @@ struct World {
     const auto request = wire.stream.next();
     const bool waited = gateway->handshake().has_waiting();
     static_cast<void>(gateway->serve(wire.id, *request, now));
+    if (!wire.stream.half()) gateway->on_requests_served(wire.id);
     gateway->connections().find(wire.id)->partial_request = wire.stream.half();
     carry(frame);
     if (!waited && gateway->handshake().has_waiting()) waiting = frame;
     if (!gateway->handshake().has_waiting()) waiting.reset();
     Plc& master = masters[wire.plc];
-    if (frame.words[6] != wire.heartbeat.value_or(master.heard)) {
-      watched = true;
-      stopped_since_beat = false;
-      beat_steps = 0;
-    }
+    if (frame.words[6] != wire.heartbeat.value_or(master.heard)) heartbeats[wire.plc] = {true, false, 0};
     wire.heartbeat = master.heard = frame.words[6];
     const bool is_current = frame.words[0] == master.counter && frame.words[1] == master.code;
     if (is_current && frame.command == master.command) master.answered_on = wire.id;
@@ -254,6 +254,7 @@ struct World {
     modbus::append_word(request.pdu, settings->registers.at(Name::done_counter));
     modbus::append_word(request.pdu, 3);
     const modbus::Reply reply = gateway->serve(id, request, now);
+    gateway->on_requests_served(id);
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return {modbus::word_at(frame, 9), modbus::word_at(frame, 11), modbus::word_at(frame, 13)};
   }
@@ -323,7 +324,7 @@ struct World {
     }
     if (line.command == "stop") {
       owed = false;
-      stopped_since_beat = true;
+      for (Heartbeat& heartbeat : heartbeats) heartbeat.stopped_since_beat = true;
     }
   }
   void answer_arrives() {
@@ -349,8 +350,8 @@ struct World {
     // The replies of the daemon to the dead gateway are lost.
     answers.clear();
     for (Plc& master : masters) master.heard = 0;
-    watched = owed = stopped_since_beat = false;
-    beat_steps = 0;
+    owed = false;
+    heartbeats = {};
     if (runs) {
       gateway->on_daemon_connected(now);
       carry({});
@@ -359,8 +360,11 @@ struct World {
   void pass() {
     now += step;
     if (runs && !paused) daemon_says_state();
-    if (watched && ++beat_steps == silent_steps) owed = owed || !stopped_since_beat;
-    beat_steps = std::min(beat_steps, silent_steps);
+    for (Heartbeat& heartbeat : heartbeats) {
+      if (heartbeat.watched && ++heartbeat.steps == silent_steps)
+        owed = owed || !heartbeat.stopped_since_beat;
+      heartbeat.steps = std::min(heartbeat.steps, silent_steps);
+    }
     turn();
   }
 
@@ -421,8 +425,12 @@ std::string World::key() const {
   }
   for (const auto& [address, past] : gateway->connections().history())
     key << (address == "10.0.0.1") << past.at << past.heartbeat;
-  key << gateway->heartbeat_monitor().active() << gateway->heartbeat_monitor().silent(now)
-      << gateway->heartbeat_monitor().silent(now + step) << gateway->heartbeat_monitor().stop_required()
+  const HeartbeatMonitor& monitor = gateway->heartbeat_monitor();
+  for (const auto& [address, heartbeat] : monitor.watched()) {
+    for (const Nanoseconds at : {now, now + step})
+      key << (address == "10.0.0.1") << (monitor.state_of(address, at) == HeartbeatMonitor::State::silent);
+  }
+  key << static_cast<int>(monitor.watched().size()) << monitor.stop_required()
       << gateway->daemon_responds(now) << gateway->reaction_pending() << gateway->reaction_covers_silence()
       << (reacted_at == now);
   for (const std::uint16_t counter : gateway->pending_counters()) key << counter;
@@ -441,7 +449,9 @@ std::string World::key() const {
   for (const Answer& answer : answers) key << answer.accepted;
   key << waiting.has_value();
   if (waiting) key << *waiting << (waiting->halts == halts);
-  key << watched << owed << stopped_since_beat << beat_steps;
+  key << owed;
+  for (const Heartbeat& heartbeat : heartbeats)
+    key << heartbeat.watched << heartbeat.stopped_since_beat << heartbeat.steps;
   for (std::size_t plc = 0; plc < plcs; ++plc) key << left.commands[plc] << left.connections[plc];
   key << left.master_deaths << left.gateway_deaths << left.daemon_deaths << left.pauses << left.busy;
   return key.bytes();
