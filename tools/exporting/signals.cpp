@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <limits>
 
 #include "base/numbers.h"
@@ -76,6 +77,17 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
     for (const sysid::Log& log : recording->channels) groups.push_back(group_of(log));
     return groups;
   }
+  for (const sysid::TableColumn& column : table->columns) {
+    if (column.bad.empty()) continue;
+    const sysid::BadCell& cell = column.bad.front();
+    problems.add({path, cell.at, cell.line_text,
+                  "`" + cell.text + "` in column '" + column.name + "' is not a number",
+                  "softgrip export copies texts only from recordings and logs; softgrip import converts the "
+                  "file to a log"});
+  }
+  if (!problems.empty()) return tl::unexpected(refuse(problems));
+  for (const std::string& warning : table->warnings)
+    std::fprintf(stderr, "softgrip: %s: %s\n", path.c_str(), warning.c_str());
   groups = groups_of(*table);
   if (!groups.empty() && rises(groups.front().time_s)) return groups;
   problems.add({path,
