@@ -10,7 +10,8 @@ LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last
                      double ceiling_kpa) noexcept {
   // If the last command is not finite, the rest pressure is the only pressure that is known to be safe.
   const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : resting_kpa(limits);
-  if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {.command_kpa = last, .invalid = true};
+  if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa) || !(elapsed_s >= 0))
+    return {.command_kpa = last, .invalid = true};
   // A ceiling below the rest pressure is replaced by the rest pressure. Otherwise, a low ceiling would
   // evacuate a finger, or stop a finger that returns to rest.
   const double highest_kpa = std::max(ceiling_kpa, resting_kpa(limits));

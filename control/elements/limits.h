@@ -31,7 +31,8 @@ struct LimitedCommand {
   bool saturated = false;  ///< the requested pressure is outside the pressure range
   bool slewing = false;    ///< the requested pressure is further from the last command than the slew limits
                            ///< allow
-  bool invalid = false;    ///< the request or the ceiling is not a number, so the last command is held
+  bool invalid = false;    ///< the request, the ceiling or the elapsed time is not a number, or the elapsed
+                           ///< time is negative, so the last command is held
   bool capped = false;     ///< the requested pressure is above the ceiling
 };
 
@@ -72,7 +73,8 @@ inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 /// `elapsed_s` (>= 0) ago. The result is always inside the pressure range, even if the last command was
 /// outside. Inside the pressure range, the slew limits apply too. If the ceiling is below the last command,
 /// the command decreases to the ceiling as fast as the slew limits permit. A ceiling below the rest pressure
-/// has the effect of a ceiling at the rest pressure.
+/// has the effect of a ceiling at the rest pressure. If the elapsed time is not a number or negative, the
+/// last command is held.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 

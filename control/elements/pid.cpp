@@ -13,6 +13,7 @@ Pid::Pid(const PidSettings& settings, double tick_s) noexcept
       tracking_share_(lag_share(tick_s, settings.tracking_time_s)) {}
 
 void Pid::align(double command_kpa) noexcept {
+  if (!std::isfinite(command_kpa)) return;
   memory_ = Memory::aligning;
   rate_mm_per_s_ = 0;
   align_to_kpa_ = command_kpa;
@@ -24,7 +25,9 @@ double Pid::immediate_kpa(double reference_mm, double measurement_mm) const noex
 }
 
 double Pid::step(double error_reference_mm, double measurement_mm, double feedforward_kpa) noexcept {
+  // A value that is not finite would remain in the integral and in the derivative.
   const double error_mm = error_reference_mm - measurement_mm;
+  if (!std::isfinite(error_mm) || !std::isfinite(feedforward_kpa)) return hold(feedforward_kpa);
   increment_kpa_ = 0;
   if (memory_ == Memory::measured) {
     const double rate = (measurement_mm - last_measurement_mm_) / tick_s_;
@@ -47,7 +50,7 @@ double Pid::step(double error_reference_mm, double measurement_mm, double feedfo
 }
 
 double Pid::hold(double feedforward_kpa) noexcept {
-  if (memory_ == Memory::aligning) {
+  if (memory_ == Memory::aligning && std::isfinite(feedforward_kpa)) {
     feedback_kpa_ = align_to_kpa_ - feedforward_kpa;
     memory_ = Memory::aligned_ahead;
   } else if (memory_ == Memory::measured) {
@@ -59,8 +62,10 @@ double Pid::hold(double feedforward_kpa) noexcept {
 }
 
 void Pid::sent(double command_kpa) noexcept {
+  if (!std::isfinite(command_kpa)) return;
   if (aligns()) align_to_kpa_ = command_kpa;
   const double cut_kpa = command_kpa - request_kpa_;
+  if (!std::isfinite(cut_kpa)) return;
   // The anti-windup changes the integral. If the integral gain is 0, nothing would ever remove this change.
   // Therefore, the anti-windup is not applied.
   if (cut_kpa == 0 || settings_.ki_kpa_per_mm_s == 0) return;

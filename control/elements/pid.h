@@ -50,23 +50,27 @@ class Pid {
 
   /// Makes the request of the next step() equal to `command_kpa`, for any control error and any feedforward.
   /// To do so, the integrator absorbs the difference. Call this function at a start, when the mode changes
-  /// from hold or pressure to displacement, and when the feedforward changes.
+  /// from hold or pressure to displacement, and when the feedforward changes. A command that is not finite is
+  /// ignored.
   void align(double command_kpa) noexcept;
 
   /// Returns the feedback part of the request [kPa]. The request is the sum of feedforward_kpa and the
-  /// feedback. `error_reference_mm` is the reference at the time at which `measurement_mm` was sampled.
+  /// feedback. `error_reference_mm` is the reference at the time at which `measurement_mm` was sampled. If an
+  /// argument is not finite, the function does the same as hold().
   [[nodiscard]] double step(double error_reference_mm, double measurement_mm,
                             double feedforward_kpa) noexcept;
 
   /// Processes a tick without a usable measurement, or a tick in which the feedback is held on purpose.
   /// Returns the feedback of the last tick; the integrator and the derivative do not change. The first call
   /// after align() returns the feedback that keeps the command unchanged. The next step() continues from this
-  /// feedback.
+  /// feedback. The result is finite even if the feedforward is not. A feedforward that is not finite does not
+  /// end the effect of align().
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
 
   /// Receives the command that was sent after the limits. The anti-windup acts on the difference between this
   /// command and the last request. The difference can come from the pressure range, from the slew limits or
-  /// from a feedforward outside the pressure range.
+  /// from a feedforward outside the pressure range. The function ignores a command that is not finite, and a
+  /// command after a request that is not finite.
   void sent(double command_kpa) noexcept;
 
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }

@@ -60,6 +60,23 @@ TEST(Limits, ANaNRequestHoldsTheCommandAndInfinitySlews) {
   EXPECT_TRUE(limit(typical, infinity, 33, 0.005).saturated);
 }
 
+TEST(Limits, AnInvalidElapsedTimeHoldsTheLastCommand) {
+  for (const double elapsed_s : {-1.0, -0.005, nan, -infinity}) {
+    SCOPED_TRACE(elapsed_s);
+    for (const double wanted_kpa : {0.0, 33.0, 60.0, infinity}) {
+      const LimitedCommand command = limit(typical, wanted_kpa, 33, elapsed_s);
+      EXPECT_EQ(command.command_kpa, 33);
+      EXPECT_TRUE(command.invalid);
+    }
+    EXPECT_EQ(limit(typical, 0, 0, elapsed_s).command_kpa, 0);
+    EXPECT_EQ(limit(typical, 60, 80, elapsed_s).command_kpa, 60)
+        << "the held command is inside the pressure range";
+  }
+  EXPECT_EQ(limit(typical, 40, 33, 0).command_kpa, 33);
+  EXPECT_FALSE(limit(typical, 40, 33, 0).invalid);
+  EXPECT_EQ(limit(typical, 40, 33, infinity).command_kpa, 40);
+}
+
 TEST(Limits, ClampsTheReferenceAndChecksTheReading) {
   EXPECT_EQ(limit_reference(typical, 26).reference_mm, 25);
   EXPECT_TRUE(limit_reference(typical, 26).clamped);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "control/elements/limits.h"
 
@@ -126,6 +127,42 @@ TEST(Pid, AGapInTheReadingsHoldsTheFeedback) {
   for (int i = 0; i < 50; ++i) feedback = pid.step(10, 4 + 0.02 * i, 0);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(pid.hold(0), feedback);
   EXPECT_NEAR(pid.step(10, 4.98, 0), feedback, 0.5);
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(Pid, AnArgumentThatIsNotFiniteHasTheEffectOfAMissingMeasurement) {
+  const auto after = [](double reference_mm, double measurement_mm, double feedforward_kpa, bool holds) {
+    PidSettings settings = typical;
+    settings.derivative_filter_s = 0;
+    Pid pid(settings, tick_s);
+    for (int i = 0; i < 20; ++i) (void)pid.step(10, 4 + 0.02 * i, 3);
+    EXPECT_TRUE(std::isfinite(holds ? pid.hold(3) : pid.step(reference_mm, measurement_mm, feedforward_kpa)));
+    pid.sent(30);
+    return pid.step(10, 4.5, 3);
+  };
+  for (const double bad : {nan, infinity, -infinity}) {
+    SCOPED_TRACE(bad);
+    EXPECT_EQ(after(10, bad, 3, false), after(0, 0, 0, true));
+    EXPECT_EQ(after(bad, 4, 3, false), after(0, 0, 0, true));
+    EXPECT_TRUE(std::isfinite(after(10, 4, bad, false)));
+  }
+}
+
+TEST(Pid, ACommandThatIsNotFiniteIsIgnored) {
+  for (const double bad : {nan, infinity, -infinity}) {
+    SCOPED_TRACE(bad);
+    Pid pid(typical, tick_s);
+    pid.align(25);
+    pid.align(bad);
+    pid.sent(bad);
+    EXPECT_TRUE(std::isfinite(pid.hold(bad)));
+    pid.sent(bad);
+    EXPECT_NEAR(10 + pid.step(20, 3, 10), 25, 1e-12);
+    pid.sent(bad);
+    EXPECT_NEAR(10 + pid.step(20, 3, 10), 25 + 8 * tick_s * 17, 1e-9);
+  }
 }
 
 TEST(Pid, SaturationLeavesNoBiasWithoutAnIntegralPart) {
