@@ -6,6 +6,7 @@
 #include "library/include/softgrip/validate.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"
+#include "sysid/fitting/multistart.h"
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/validate.h"
 #include "sysid/instrument/identified_logs.h"
@@ -34,6 +35,15 @@ sysid::ShowProgress progress_of(const Progress& progress) {
     progress("start " + std::to_string(now.done) + " of " + std::to_string(now.starts) + ", best RMSE " +
              significant(now.best_rmse_mm, 4));
   };
+}
+
+/// Throws InvalidArgument if the model has no parameter with one of the names.
+void require_parameters(const std::string& argument, const std::vector<std::string>& names,
+                        const model::Model& model) {
+  for (const std::string& name : names) {
+    if (!model::find_path(model, name))
+      throw InvalidArgument(argument, library::unknown_parameter(model, name));
+  }
 }
 
 std::vector<Estimate> estimates_of(const std::vector<sysid::Estimate>& list) {
@@ -85,6 +95,12 @@ Identification identify(const std::vector<Log>& logs, const IdentifyOptions& opt
     question.validation = library::checked_logs("validation", options.validation, options.use, false,
                                                 library::NeededUnit{logs.front().name, logs.front().unit});
   if (options.start) question.start = options.start->parts().value;
+  if (!question.structure && !(options.fixed.empty() && options.free.empty())) {
+    const model::Model fitted =
+        question.start ? *question.start : sysid::base_model(question.logs, options.branches);
+    require_parameters("fixed", options.fixed, fitted);
+    require_parameters("free", options.free, fitted);
+  }
   question.branches = options.branches;
   question.options.fixed = options.fixed;
   question.options.free = options.free;
@@ -115,10 +131,16 @@ Identification identify(const std::vector<Log>& logs, const IdentifyOptions& opt
 }
 
 Validation validate(const Model& model, const std::vector<Log>& logs, const LogUse& use) {
+  return validate(model, logs, use, {});
+}
+
+Validation validate(const Model& model, const std::vector<Log>& logs, const LogUse& use,
+                    const std::stop_token& stop) {
   std::vector<sysid::Log> checked =
       library::checked_logs("logs", logs, use, false, library::needed_for(model));
-  const sysid::Validation found =
-      sysid::validate_given_logs(model.parts().value, checked, library::record_options(use));
+  const sysid::Validation found = library::cancellable(0, stop, [&] {
+    return sysid::validate_given_logs(model.parts().value, checked, library::record_options(use));
+  });
   return {sysid::verdict_of(found), found.warnings, library::predictions_of(found.records, found.scores),
           sysid::validate_json(found, checked), sysid::validate_page(found, checked).to_html()};
 }

@@ -44,6 +44,14 @@ std::string in_brackets(model::OutputUnit unit) {
   return std::string(model::name_of(unit));
 }
 
+std::string unknown_parameter(const model::Model& model, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i)
+    names.push_back(model::parameter_path(model, i));
+  const std::string near = document::nearest(name, names);
+  return "the model has no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
 }  // namespace library
 
 std::string name_of(Unit unit) {
@@ -108,7 +116,7 @@ std::vector<Parameter> Model::parameters() const {
 Model Model::with(const std::string& parameter, double value) const {
   const model::Model& model = parts_->value;
   const auto place = model::find_path(model, parameter);
-  if (!place) throw InvalidArgument("parameter", "the model has no parameter '" + parameter + "'");
+  if (!place) throw InvalidArgument("parameter", library::unknown_parameter(model, parameter));
   const model::ParameterSpec& spec = model::parameter_spec(model, *place);
   library::require_between("value", value, spec.lower, spec.upper,
                            model::in_unit(std::string(spec.unit), model.output_unit));

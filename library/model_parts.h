@@ -39,6 +39,9 @@ namespace library {
 /// Returns the name of a unit for messages: "mm" or "deg".
 [[nodiscard]] std::string in_brackets(model::OutputUnit unit);
 
+/// Returns the sentence for a parameter that a model does not have.
+[[nodiscard]] std::string unknown_parameter(const model::Model& model, const std::string& name);
+
 // Each of the following functions throws InvalidArgument if its requirement is not met.
 /// Requires one value for each of `count` times.
 void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -127,39 +128,90 @@ std::optional<SimulatedObject> object_of(const std::optional<ObjectTuple>& objec
   return SimulatedObject{object->first, object->second};
 }
 
-std::unique_ptr<SimulatedBoard> board_of(const std::vector<FingerTuple>& fingers, double tick_s) {
+/// A simulated board for Python. A call after a long time on the board's clock can take seconds, so the calls
+/// release the global interpreter lock (GIL). A mutex protects the board from other Python threads.
+class SharedBoard {
+ public:
+  SharedBoard(std::vector<SimulatedFinger> fingers, double tick_s) : board_(std::move(fingers), tick_s) {}
+
+  /// Returns the result of call(board).
+  template <class Call>
+  auto with_board(Call call) {
+    const py::gil_scoped_release others_may_run;
+    const std::lock_guard lock(mutex_);
+    return call(board_);
+  }
+
+ private:
+  SimulatedBoard board_;
+  std::mutex mutex_;
+};
+
+std::unique_ptr<SharedBoard> board_of(const std::vector<FingerTuple>& fingers, double tick_s) {
   std::vector<SimulatedFinger> all;
   for (const auto& [model, object, noise, pressure_min_kpa, pressure_max_kpa, seed] : fingers)
     all.push_back({model, object_of(object), noise, pressure_min_kpa, pressure_max_kpa, seed});
-  return std::make_unique<SimulatedBoard>(std::move(all), tick_s);
+  return std::make_unique<SharedBoard>(std::move(all), tick_s);
+}
+
+std::size_t channels_of(SharedBoard& shared) {
+  return shared.with_board([](SimulatedBoard& board) { return board.channels(); });
 }
 
 /// Returns the readings of an exchange. If the exchange fails, returns the name of its status and the reason.
-py::tuple exchanged(SimulatedBoard& board, const std::vector<double>& commands_kpa, double deadline_s) {
-  if (commands_kpa.size() != board.channels())
+py::tuple exchanged(SharedBoard& shared, const std::vector<double>& commands_kpa, double deadline_s) {
+  const std::size_t channels = channels_of(shared);
+  if (commands_kpa.size() != channels)
     throw InvalidArgument("commands", std::to_string(commands_kpa.size()) + " values, but there are " +
-                                          std::to_string(board.channels()) +
+                                          std::to_string(channels) +
                                           " channels. One value per channel is required, in kPa");
-  std::vector<Reading> readings(board.channels());
-  const BusStatus status = board.exchange(commands_kpa, readings, duration_of("deadline", deadline_s));
+  const std::chrono::nanoseconds deadline = duration_of("deadline", deadline_s);
+  std::vector<Reading> readings(channels);
+  const auto [status, detail] = shared.with_board([&](SimulatedBoard& board) {
+    const BusStatus result = board.exchange(commands_kpa, readings, deadline);
+    return std::pair(result, board.detail());
+  });
   py::list all;
   if (status == BusStatus::ok) {
     for (const Reading& reading : readings)
       all.append(py::make_tuple(reading.displacement, reading.pressure_kpa, reading.temperature_c,
                                 seconds_of(reading.sampled_at), reading.sequence, word_of(reading.validity)));
   }
-  return py::make_tuple(name_of(status), board.detail(), all);
+  return py::make_tuple(name_of(status), detail, all);
 }
 
-py::tuple connected(SimulatedBoard& board, double deadline_s) {
-  const BusStatus status = board.connect(duration_of("deadline", deadline_s));
-  return py::make_tuple(name_of(status), board.detail());
+py::tuple connected(SharedBoard& shared, double deadline_s) {
+  const std::chrono::nanoseconds deadline = duration_of("deadline", deadline_s);
+  const auto [status, detail] = shared.with_board([&](SimulatedBoard& board) {
+    const BusStatus result = board.connect(deadline);
+    return std::pair(result, board.detail());
+  });
+  return py::make_tuple(name_of(status), detail);
 }
 
-void require_channel(const SimulatedBoard& board, std::size_t channel) {
-  if (channel >= board.channels())
+void require_channel(SharedBoard& shared, std::size_t channel) {
+  if (const std::size_t channels = channels_of(shared); channel >= channels)
     throw InvalidArgument("channel", std::to_string(channel) + " is not below the number of channels, " +
-                                         std::to_string(board.channels()));
+                                         std::to_string(channels));
+}
+
+void advance(SharedBoard& shared, double duration_s) {
+  const std::chrono::nanoseconds duration = duration_of("duration", duration_s);
+  shared.with_board([&](SimulatedBoard& board) { board.advance(duration); });
+}
+
+void set_object(SharedBoard& shared, std::size_t channel, const std::optional<ObjectTuple>& object) {
+  require_channel(shared, channel);
+  if (object && !(std::isfinite(object->first) && object->second >= 0 && object->second <= 1))
+    throw InvalidArgument("object",
+                          "the position must be finite, and the share by which the object yields must be "
+                          "from 0 to 1");
+  shared.with_board([&](SimulatedBoard& board) { board.set_object(channel, object_of(object)); });
+}
+
+double displacement(SharedBoard& shared, std::size_t channel) {
+  require_channel(shared, channel);
+  return shared.with_board([&](const SimulatedBoard& board) { return board.displacement(channel); });
 }
 
 }  // namespace
@@ -190,28 +242,22 @@ void add_control(py::module_& module) {
       .def("vent", &Controller::vent)
       .def("pressure", &Controller::pressure)
       .def("tick", controller_tick);
-  py::class_<SimulatedBoard>(module, "SimulatedBoard")
+  py::class_<SharedBoard>(module, "SimulatedBoard")
       .def(py::init(&board_of))
-      .def("channels", &SimulatedBoard::channels)
+      .def("channels", channels_of)
       .def("connect", connected)
       .def("exchange", exchanged)
-      .def("describe", &SimulatedBoard::describe)
-      .def("now", [](const SimulatedBoard& board) { return seconds_of(board.now()); })
-      .def("advance", [](SimulatedBoard& board,
-                         double duration_s) { board.advance(duration_of("duration", duration_s)); })
-      .def("set_object",
-           [](SimulatedBoard& board, std::size_t channel, const std::optional<ObjectTuple>& object) {
-             require_channel(board, channel);
-             if (object && !(std::isfinite(object->first) && object->second >= 0 && object->second <= 1))
-               throw InvalidArgument("object",
-                                     "the position must be finite, and the share by which the object yields "
-                                     "must be from 0 to 1");
-             board.set_object(channel, object_of(object));
+      .def("describe",
+           [](SharedBoard& shared) {
+             return shared.with_board([](const SimulatedBoard& board) { return board.describe(); });
            })
-      .def("displacement", [](const SimulatedBoard& board, std::size_t channel) {
-        require_channel(board, channel);
-        return board.displacement(channel);
-      });
+      .def("now",
+           [](SharedBoard& shared) {
+             return seconds_of(shared.with_board([](const SimulatedBoard& board) { return board.now(); }));
+           })
+      .def("advance", advance)
+      .def("set_object", set_object)
+      .def("displacement", displacement);
 }
 
 }  // namespace softgrip::python

@@ -210,11 +210,12 @@ py::dict validated(const Model& model, const py::list& logs, const std::string& 
                    const std::string& begin, bool held) {
   const std::vector<Log> given = logs_of(logs);
   const LogUse use = use_of(drive, begin, held);
-  Validation found;
-  {
-    const py::gil_scoped_release others_may_run;
-    found = validate(model, given, use);
-  }
+  struct {
+    std::stop_token stop;
+    Progress progress;
+  } options;
+  Validation found =
+      interruptible(py::none(), options, [&] { return validate(model, given, use, options.stop); });
   py::dict dict;
   dict["verdict"] = found.verdict;
   dict["warnings"] = found.warnings;

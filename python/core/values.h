@@ -52,8 +52,8 @@ Value chosen(const char* argument, const std::string& word,
   throw InvalidArgument(argument, "'" + word + "' is not one of " + all);
 }
 
-/// Adds limits, PID, controller and simulated board. Each function of these classes takes only microseconds,
-/// so it keeps the global interpreter lock (GIL).
+/// Adds limits, PID, controller and simulated board. Each function of limits, PID and controller takes only
+/// microseconds, so it keeps the global interpreter lock (GIL).
 void add_control(pybind11::module_& module);
 
 /// Adds the function `health`, which computes the health of fingers.

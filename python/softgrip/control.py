@@ -305,15 +305,16 @@ class SimulatedBoard(Board):
         return self._core.now()
 
     def advance(self, duration: float) -> None:
-        """Advances the board's clock by a duration [s]."""
+        """Advances the board's clock by a duration [s]. The next call of `exchange()`, `displacement()` or `set_object()`
+        simulates this duration, so its computation time increases with the duration."""
         self._core.advance(_number("duration", duration, "s"))
 
     def set_object(self, channel: int, value: Optional[SimulatedObject]) -> None:
-        """Places an object at the finger of a channel; None removes the object."""
+        """Places an object at the finger of a channel at the time `now`; None removes the object."""
         self._core.set_object(_whole("channel", channel), _object_values(value))
 
     def displacement(self, channel: int = 0) -> float:
-        """Returns the true displacement of a finger, without the errors of its sensor."""
+        """Returns the true displacement of a finger at the time `now`, without the errors of its sensor."""
         return self._core.displacement(_whole("channel", channel))
 
 

@@ -301,7 +301,8 @@ class Log:
         return cls(t, command, displacement, pressure, temperature, supply, unit, name)
 
     def write(self, path: Path) -> None:
-        """Writes a log file, from which `read()` reads an equal log."""
+        """Writes a log file, from which `read()` reads an equal log. The times of a log file start at 0, so the first
+        value of `t` is subtracted from all times."""
         _core.write_log(path_of("path", path), self._columns())
 
     def check(self) -> None:

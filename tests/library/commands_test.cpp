@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -182,6 +183,19 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
       (void)identify(logs, options);
     }));
   }
+  const Course course = sine(0, 40, 0.1, 300'000, 0.005);
+  Log long_log;
+  long_log.time_s = course.time_s;
+  long_log.pressure_command_kpa = course.value;
+  long_log.displacement = model.simulate(course.time_s, course.value, {.noise = 0.05});
+  // validate() first checks the log as check() does. The stop is requested after this check.
+  const auto began = std::chrono::steady_clock::now();
+  check(long_log);
+  const std::chrono::duration<double, std::milli> checked_ms = std::chrono::steady_clock::now() - began;
+  const std::chrono::milliseconds delay(std::lround(1.3 * checked_ms.count()));
+  times_s.push_back(time_to_stop_s(delay, [&](const std::stop_token& stop) {
+    (void)validate(model, {long_log}, {.begin = Begin::unknown}, stop);
+  }));
   for (const int after_ms : {0, 2, 10}) {
     times_s.push_back(time_to_stop_s(std::chrono::milliseconds(after_ms), [&](const std::stop_token& stop) {
       DiagnoseOptions options;
@@ -195,7 +209,7 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
       (void)diagnose_change(Model::load(model_), logs, {read_log(path("three.csv"))}, options);
     }));
   }
-  ASSERT_EQ(times_s.size(), 8U);
+  ASSERT_EQ(times_s.size(), 9U);
   for (const double time_s : times_s) EXPECT_LT(time_s, 1);
 }
 
@@ -247,7 +261,20 @@ TEST_F(LibraryAndCommand, HealthThrowsForInvalidInputAndOnCancellation) {
 TEST_F(LibraryAndCommand, InvalidInputThrowsAnException) {
   const Log log = read_log(path("one.csv"));
   EXPECT_THROW((void)identify({}), InvalidArgument);
-  EXPECT_THROW((void)identify({log}, {.fixed = {"no.such"}}), Refused);
+  for (const std::string argument : {"fixed", "free"}) {
+    IdentifyOptions unknown{.fixed = {"kelvin_voigt.k0_kpa_per_mm"}};
+    (argument == "fixed" ? unknown.fixed : unknown.free) = {"kelvin_voigt.k0_kpa_per_m"};
+    try {
+      (void)identify({log}, unknown);
+      FAIL();
+    } catch (const InvalidArgument& error) {
+      EXPECT_EQ(error.argument(), argument);
+      EXPECT_NE(std::string(error.what()).find("did you mean 'kelvin_voigt.k0_kpa_per_mm'?"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_THROW((void)identify({log}, {.start = Model::load(model_), .fixed = {"no.such"}}), InvalidArgument);
   EXPECT_THROW((void)identify({log}, {.starts = 0}), InvalidArgument);
   EXPECT_THROW((void)identify({log}, {.use = {.drive = Drive::measured}}), InvalidArgument);
   Log angle = log;

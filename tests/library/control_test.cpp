@@ -66,6 +66,12 @@ TEST(LibraryControl, LimitsPressureAndSlewRateOfAnyRequest) {
   EXPECT_NEAR(limit(limits, 40, 10, 0.01).command_kpa, 13, 1e-12);
   EXPECT_TRUE(limit(limits, nan, 10, 0.01).invalid);
   EXPECT_EQ(limit(limits, nan, 10, 0.01).command_kpa, 10);
+  for (const double elapsed_s : {-1.0, -0.005, nan}) {
+    SCOPED_TRACE(elapsed_s);
+    EXPECT_EQ(limit(limits, 0, 0, elapsed_s).command_kpa, 0);
+    EXPECT_EQ(limit(limits, 50, 10, elapsed_s).command_kpa, 10);
+    EXPECT_TRUE(limit(limits, 50, 10, elapsed_s).invalid);
+  }
 }
 
 TEST(LibraryControl, APidContinuesAtTheAlignedCommand) {
@@ -77,6 +83,24 @@ TEST(LibraryControl, APidContinuesAtTheAlignedCommand) {
   EXPECT_NEAR(5 + pid.step(3, 2, 5), 12, 1e-9);
   pid.sent(12);
   EXPECT_GT(5 + pid.step(3, 2, 5), 12);
+}
+
+TEST(LibraryControl, APidContinuesAfterAMeasurementThatIsNotANumber) {
+  PidSettings gains;
+  gains.kp_kpa_per_mm = 1;
+  gains.ki_kpa_per_mm_s = 2;
+  Limits limits;
+  limits.pressure_max_kpa = 50;
+  Pid pid(gains, 0.01);
+  double command_kpa = 10;
+  pid.align(command_kpa);
+  for (int i = 0; i < 200; ++i) {
+    const double request_kpa = pid.step(3, i == 100 ? nan : 2, 0);
+    ASSERT_TRUE(std::isfinite(request_kpa)) << i;
+    command_kpa = limit(limits, request_kpa, command_kpa, 0.01).command_kpa;
+    pid.sent(command_kpa);
+  }
+  EXPECT_NEAR(command_kpa, 10 + 2 * 0.01 * 1 * 197, 1e-9) << "the integral stops for two of the 199 periods";
 }
 
 TEST(LibraryControl, AReferenceRefusesInvalidSegments) {
@@ -155,6 +179,32 @@ TEST(LibraryBoard, SimulatesObjectsAndRefusesInvalidExchanges) {
   command_kpa[0] = nan;
   EXPECT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::write_refused);
   EXPECT_EQ(name_of(BusStatus::write_refused), "write_refused");
+}
+
+TEST(LibraryBoard, DisplacementAndObjectsApplyAtTheTimeOfTheClock) {
+  const auto connected = [](SimulatedBoard& board) {
+    const std::array<double, 1> command_kpa{30};
+    std::array<Reading, 1> reading;
+    EXPECT_EQ(board.connect(1ms), BusStatus::ok);
+    EXPECT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::ok);
+  };
+  SimulatedBoard board({{.model = bench_twin()}});
+  connected(board);
+  EXPECT_NEAR(board.displacement(0), 0, 0.1);
+  board.advance(5s);
+  const double moved = board.displacement(0);
+  EXPECT_GT(moved, 5);
+  const std::array<double, 1> command_kpa{30};
+  std::array<Reading, 1> reading;
+  ASSERT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::ok);
+  EXPECT_EQ(board.displacement(0), moved);
+  EXPECT_EQ(reading[0].displacement, moved);
+
+  SimulatedBoard blocked({{.model = bench_twin()}});
+  connected(blocked);
+  blocked.advance(5s);
+  blocked.set_object(0, SimulatedObject{2, 0});
+  EXPECT_EQ(blocked.displacement(0), moved) << "the object does not move the finger at once";
 }
 
 }  // namespace

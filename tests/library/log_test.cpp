@@ -70,6 +70,17 @@ TEST_F(LibraryLog, AWrittenLogIsReadBackUnchanged) {
   EXPECT_EQ(read.sha256.size(), 64U);
 }
 
+TEST_F(LibraryLog, TheTimesOfAWrittenLogStartAtZero) {
+  Log log = simulated();
+  for (double& time_s : log.time_s) time_s += 128;
+  const std::string path = file("log.csv");
+  write_log(path, log);
+  const Log read = read_log(path);
+  ASSERT_EQ(read.time_s.size(), log.time_s.size());
+  for (std::size_t i = 0; i < read.time_s.size(); ++i) ASSERT_EQ(read.time_s[i], log.time_s[i] - 128) << i;
+  EXPECT_EQ(read.displacement, log.displacement);
+}
+
 TEST_F(LibraryLog, ImportsAFileOfAnotherProgram) {
   const Log log = simulated();
   std::string text = "Time [s];Pressure setpoint [bar];Displacement [mm]\n";

@@ -150,6 +150,14 @@ class Objects(unittest.TestCase):
         copy = pickle.loads(pickle.dumps(log))
         np.testing.assert_array_equal(copy.displacement, log.displacement)
 
+    def test_the_times_of_a_written_log_start_at_zero(self):
+        log = simulated()
+        with tempfile.TemporaryDirectory() as folder:
+            Log(log.t + 128, log.command, log.displacement).write(pathlib.Path(folder) / "log.csv")
+            read = Log.read(pathlib.Path(folder) / "log.csv")
+        np.testing.assert_array_equal(read.t, log.t + 128 - 128)
+        np.testing.assert_array_equal(read.displacement, log.displacement)
+
     def test_a_log_is_created_from_a_pandas_data_frame(self):
         import pandas
         log = simulated()
@@ -322,6 +330,8 @@ class HostileArguments(unittest.TestCase):
         for name, call in (("t", lambda: model.simulate([1, 0], t)), ("pressure", lambda: model.simulate(t, [1])),
                            ("start", lambda: model.inverse(t, t, start=-1)), ("slew_up", lambda: model.inverse(t, t, slew_up=0)),
                            ("name", lambda: model.with_parameter("no.such", 1)),
+                           ("fixed", lambda: identify(simulated(), fixed=["no.such"])),
+                           ("free", lambda: identify(simulated(), start=model, free=["no.such"])),
                            ("t", lambda: Log([1, 0], t, t).check())):
             with self.assertRaisesRegex(softgrip.InvalidArgument, f"^{name}: ") as caught:
                 call()
@@ -390,16 +400,27 @@ class Threads(unittest.TestCase):
             identify(simulated(), starts=1000, progress=progress)
 
     def test_ctrl_c_ends_a_call_within_a_second(self):
-        began = []
+        t, pressure = sine(samples=300_000, step_s=0.005)
+        model = Model.load(MODEL)
+        long_log = Log(t, pressure, model.simulate(t, pressure, noise=0.05))
+        start = time.monotonic()
+        long_log.check()
+        check_s = time.monotonic() - start  # validate() first checks the log, and then estimates its initial state
+        for name, delay_s, call in (("identify", 0.3, lambda: identify(simulated(), starts=10000)),
+                                    ("validate", 1.3 * check_s, lambda: validate(model, long_log, begin="unknown"))):
+            began = []
 
-        def interrupt():
-            time.sleep(0.3)
-            began.append(time.monotonic())
-            os.kill(os.getpid(), signal.SIGINT)
-        threading.Thread(target=interrupt).start()
-        with self.assertRaises(KeyboardInterrupt):
-            identify(simulated(), starts=10000)
-        self.assertLess(time.monotonic() - began[0], 1)
+            def interrupt():
+                time.sleep(delay_s)
+                began.append(time.monotonic())
+                os.kill(os.getpid(), signal.SIGINT)
+            with self.subTest(call=name):
+                other = threading.Thread(target=interrupt)
+                other.start()
+                with self.assertRaises(KeyboardInterrupt):
+                    call()
+                self.assertLess(time.monotonic() - began[0], 1)
+                other.join()
 
 
 if __name__ == "__main__":

@@ -9,6 +9,8 @@ import os
 import pathlib
 import pickle
 import sys
+import threading
+import time
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -89,6 +91,30 @@ class Boards(unittest.TestCase):
         self.assertIsInstance(board, softgrip.Board)
         self.assertIn("simulated", board.describe())
         self.assertEqual(repr(pickle.loads(pickle.dumps(free))), repr(free))
+
+    def test_displacement_and_objects_apply_at_the_time_of_the_clock(self):
+        board = SimulatedBoard([SimulatedFinger(Model.load(MODEL))])
+        board.connect()
+        board.exchange([30])
+        board.advance(5)
+        moved = board.displacement()
+        self.assertGreater(moved, 5)
+        board.set_object(0, SimulatedObject(2, 0))
+        self.assertEqual(board.displacement(), moved, "the object does not move the finger at once")
+
+    def test_other_threads_run_during_a_long_exchange(self):
+        board = SimulatedBoard([SimulatedFinger(Model.load(MODEL))])
+        board.connect()
+        board.exchange([30])
+        board.advance(10000)
+        other = threading.Thread(target=lambda: board.exchange([20]))
+        other.start()
+        count = 0
+        while other.is_alive():
+            time.sleep(0.001)
+            count += 1
+        other.join()
+        self.assertGreater(count, 20, "the exchange held the global interpreter lock")
 
     def test_two_boards_with_the_same_seed_give_equal_readings(self):
         model = Model.load(MODEL)

@@ -123,13 +123,15 @@ class SOFTGRIP_API SimulatedBoard final : public Board {
 
   /// Returns the time of the board's clock, which starts at 1 s.
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
-  /// Advances the clock of the board by `duration`. A negative duration has no effect.
+  /// Advances the clock of the board by `duration`. A negative duration has no effect. The next call of
+  /// exchange(), displacement() or set_object() simulates this duration, so its computation time increases
+  /// with the duration.
   void advance(std::chrono::nanoseconds duration) noexcept;
-  /// Places an object at the finger of a channel, or removes the object if `object` is empty. A call for an
-  /// unknown channel or with an invalid object has no effect.
+  /// Places an object at the finger of a channel at the time now(), or removes the object if `object` is
+  /// empty. A call for an unknown channel or with an invalid object has no effect.
   void set_object(std::size_t channel, const std::optional<SimulatedObject>& object) noexcept;
-  /// Returns the true displacement of the finger, without the errors of its sensor; NaN for an unknown
-  /// channel.
+  /// Returns the true displacement of the finger at the time now(), without the errors of its sensor; NaN for
+  /// an unknown channel.
   [[nodiscard]] double displacement(std::size_t channel) const noexcept;
 
  private:

@@ -37,15 +37,16 @@ struct LimitedCommand {
   bool saturated = false;  ///< true: the requested pressure is outside the pressure range
   bool slewing = false;    ///< true: the requested pressure is further from the last command than the slew
                            ///< limits allow
-  bool invalid = false;    ///< true: the requested pressure is not a number, so the result is the last
-                           ///< command
+  bool invalid = false;    ///< true: the requested pressure or the elapsed time is not a number, or the
+                           ///< elapsed time is negative, so the result is the last command, limited to the
+                           ///< pressure range
 };
 
 /// Returns the command for a requested pressure. The daemon uses this function too.
 /// @param limits      limits of the finger
 /// @param wanted_kpa  requested pressure [kPa]
 /// @param last_kpa    last command [kPa]
-/// @param elapsed_s   time since the last command [s], >= 0
+/// @param elapsed_s   time since the last command [s], >= 0; otherwise the result is `invalid`
 [[nodiscard]] SOFTGRIP_API LimitedCommand limit(const Limits& limits, double wanted_kpa, double last_kpa,
                                                 double elapsed_s) noexcept;
 
@@ -89,18 +90,20 @@ class SOFTGRIP_API Pid {
   Pid& operator=(Pid&& other) noexcept;
 
   /// Sets the integrator such that the next step() continues from the command `command_kpa` [kPa]. Call this
-  /// function when control starts and after a change of the feedforward.
+  /// function when control starts and after a change of the feedforward. A command that is not finite is
+  /// ignored.
   void align(double command_kpa) noexcept;
   /// Returns the feedback of this period [kPa]. The requested pressure is the sum of this feedback and
-  /// `feedforward_kpa`.
+  /// `feedforward_kpa`. If an argument is not finite, the function does the same as hold().
   /// @param reference        reference at the time of the measurement
   /// @param measurement      reading of the displacement
   /// @param feedforward_kpa  feedforward of this period [kPa]
   [[nodiscard]] double step(double reference, double measurement, double feedforward_kpa) noexcept;
-  /// Returns the feedback for a period without a usable measurement [kPa]. The integrator and the derivative
-  /// do not change.
+  /// Returns the feedback for a period without a usable measurement [kPa], which is finite for any argument.
+  /// The integrator and the derivative do not change.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
-  /// Receives the limited command that was sent to the board [kPa]. The anti-windup uses this command.
+  /// Receives the limited command that was sent to the board [kPa]. The anti-windup uses this command. A
+  /// command that is not finite is ignored.
   void sent(double command_kpa) noexcept;
 
  private:

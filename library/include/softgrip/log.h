@@ -57,7 +57,8 @@ struct ReadOptions {
 [[nodiscard]] SOFTGRIP_API Log read_log(const std::string& path, const ReadOptions& options = {});
 
 /// Writes a log as a CSV file. If read_log() reads this file, it returns columns that are equal to those of
-/// `log`. Throws FileError if the file cannot be written, and InvalidArgument if the log is invalid.
+/// `log`. The times of a log file start at 0, so the first time of `log` is subtracted from all times. Throws
+/// FileError if the file cannot be written, and InvalidArgument if the log is invalid.
 SOFTGRIP_API void write_log(const std::string& path, const Log& log);
 
 /// Checks a log as `softgrip identify` does. Throws InvalidArgument if the log is invalid. The text of the

@@ -3,6 +3,7 @@
 /// Declares the prediction of logs to which a model was not fitted. The changelog announces every
 /// incompatible change of this interface. New versions may add members to the result.
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -28,5 +29,14 @@ struct Validation {
 /// @param use    how the logs are used: input, initial state, hold of the command
 [[nodiscard]] SOFTGRIP_API Validation validate(const Model& model, const std::vector<Log>& logs,
                                                const LogUse& use = {});
+
+/// Predicts logs with a model, as the other function with this name does. Throws Cancelled after a request
+/// through `stop`.
+/// @param model  the model
+/// @param logs   at least one log, in the unit of the model
+/// @param use    how the logs are used: input, initial state, hold of the command
+/// @param stop   token through which the caller can end the computation early
+[[nodiscard]] SOFTGRIP_API Validation validate(const Model& model, const std::vector<Log>& logs,
+                                               const LogUse& use, const std::stop_token& stop);
 
 }  // namespace softgrip
