@@ -96,9 +96,10 @@ class Gripper:
     def wait_until(self, *wanted: Result, timeout_s: float) -> Result:
         """Waits until the overall result of the last start is one of `wanted`, and returns this result. A result that
         was reported before the call counts, until a call has returned it and the sequence has reported a later result
-        or has ended. Raises GripFailed if the grip reports NO PART, PART LOST or ERROR and this result is not in
-        `wanted`, also if the grip reported a result in `wanted` before. Also raises GripFailed if the sequence ends
-        without such a result, or ends other than with `done`."""
+        or has ended. If the last start has no reply yet, the call also waits for the reply. Raises GripFailed if the
+        grip reports NO PART, PART LOST or ERROR and this result is not in `wanted`, also if the grip reported a result
+        in `wanted` before. Also raises GripFailed if the sequence ends without such a result, or ends other than with
+        `done`."""
         end = time.monotonic() + timeout_s
         while True:
             result = self._session.reached(frozenset(wanted))
@@ -107,7 +108,8 @@ class Gripper:
             self._connected().read(self._session, end)
 
     def wait(self, *, timeout_s: float) -> SequenceEnd:
-        """Waits for the end of the sequence that was started last."""
+        """Waits for the end of the sequence that was started last. If the start has no reply yet, the call also waits for
+        the reply."""
         end = time.monotonic() + timeout_s
         while True:
             how = self._session.ended()

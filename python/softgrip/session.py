@@ -108,7 +108,7 @@ class Session:
         self.events: collections.deque[Event] = collections.deque(maxlen=10_000)
         self.started_at = ""
         self.last_event: Optional[int] = None
-        self.grip = 0  # request number of the last start
+        self.grip = 0  # request number of the last start whose number is known
         self.failure: Optional[Exception] = None  # reason that the daemon gave before it closed the connection
         # The starts of this client that may still run, by start id. The value is the start's request number in the daemon's
         # events, once this number is known.
@@ -116,8 +116,9 @@ class Session:
         self._names_starts = True
         self._last_id = 0
         self._waiting: set[int] = set()
-        self._start_of: dict[int, str] = {}  # start id by the id of a request that has no reply yet
-        self._last_start = 0
+        # Start ids by the ids of the starts that may have begun, but whose request numbers are not known.
+        self._start_of: dict[int, str] = {}
+        self._known_start = 0  # id of the start to which `grip` belongs
         self._stories: collections.OrderedDict[int, _Story] = collections.OrderedDict()
 
     def raise_unconfirmed(self, failure: Optional[SoftgripError]) -> None:
@@ -142,7 +143,6 @@ class Session:
         self._last_id = number
         self._waiting.add(number)
         if starts:
-            self._last_start = number
             self._start_of[number] = keys[START_ID]
             self.starts[keys[START_ID]] = None
         return number, line.encode() + b"\n"
@@ -169,13 +169,14 @@ class Session:
         beginning, and all sequences that ran before the restart have ended."""
         reply = Subscribed.of(result, "subscribe")
         if self.started_at not in ("", reply.started_at):
+            started = bool(self.grip or self._start_of)
+            story = _Story() if self._number_is_unknown() else self._story(self.grip)
             self.starts.clear()
             self._start_of.clear()
-            story = self._story(self.grip)
             if story.end is None:
                 story.finish(SequenceEnd.FAULTED)
             self._stories.clear()
-            if self.grip:
+            if started:
                 self.grip = OF_ANOTHER_DAEMON
                 self._stories[self.grip] = story
         self.started_at = reply.started_at
@@ -201,15 +202,19 @@ class Session:
     def _take_start(self, number: int, reply: Reply) -> None:
         """Processes the reply to a start, also if the program no longer waits for this reply. After a refusal, the
         sequence will not begin. After any other error, the sequence may begin nevertheless."""
-        start_id = self._start_of.pop(number)
         if reply.ok:
             request = Grip.of(reply.result, "start").request
-            if number == self._last_start:
+            if number > self._known_start:
+                self._known_start = number
                 self.grip = request
-            self.starts[start_id] = request
+            self.starts[self._start_of.pop(number)] = request
             self._drop_ended()
         elif isinstance(error_of(reply.error), (Refused, SequenceRefused)):
-            self.starts.pop(start_id, None)
+            self.starts.pop(self._start_of.pop(number), None)
+
+    def _number_is_unknown(self) -> bool:
+        """Returns True if the request number of the last start is not known, so that no event can be assigned to it."""
+        return max(self._start_of, default=0) > self._known_start
 
     def _drop_ended(self) -> None:
         self.starts = {start_id: request for start_id, request in self.starts.items()
@@ -243,8 +248,10 @@ class Session:
         return story
 
     def reached(self, wanted: frozenset[Result]) -> Optional[Result]:
-        """Returns the result of the last start if this result is in `wanted`; None if the last start has no result yet.
-        Raises GripFailed if the grip failed or the sequence ended."""
+        """Returns the result of the last start if this result is in `wanted`; None if the last start has no result or no
+        reply yet. Raises GripFailed if the grip failed or the sequence ended."""
+        if self._number_is_unknown():
+            return None
         story = self._story(self.grip)
         result = story.receive(wanted)
         if result in wanted:
@@ -254,5 +261,6 @@ class Session:
         return None
 
     def ended(self) -> Optional[SequenceEnd]:
-        """Returns the reason for which the sequence of the last start ended, or None if the sequence still runs."""
-        return self._story(self.grip).end
+        """Returns the reason for which the sequence of the last start ended; None if the sequence still runs or the start
+        has no reply yet."""
+        return None if self._number_is_unknown() else self._story(self.grip).end

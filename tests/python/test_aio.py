@@ -1,5 +1,5 @@
-"""Tests that the asyncio client ends when its task is cancelled, and that it first stops its sequence. A daemon is
-imitated in the same event loop, so the order of events is the same in each run."""
+"""Tests the asyncio client with several tasks and with a cancelled task. A cancelled program must end and must first stop
+its sequence. A daemon is imitated in the same event loop, so the order of events is the same in each run."""
 
 import asyncio
 import contextlib
@@ -75,6 +75,71 @@ class Cancellation(unittest.TestCase):
             await robot.start("pick")
             await robot.status()
             await robot.status()
+
+
+class SlowDaemon(Daemon):
+    """Replies to the second start only after `released` is set. The first sequence reports HOLDING and is done at once;
+    the second sequence is stopped at once."""
+
+    def __init__(self):
+        super().__init__()
+        self.released = asyncio.Event()
+        self.event = 0
+
+    async def serve(self, reader, writer):
+        with contextlib.suppress(ConnectionError):
+            while line := await reader.readline():
+                request = json.loads(line)
+                self.requests.append(request["command"])
+                if request["command"] == "start":
+                    await self.run(writer, request["id"], self.requests.count("start"))
+                else:
+                    self.reply(writer, request["id"], RESULTS.get(request["command"], ({}, None))[0])
+        writer.close()
+
+    async def run(self, writer, number, grip):
+        if grip == 2:
+            await self.released.wait()
+        self.reply(writer, number, {"request": grip})
+        told = (("overall_result", "HOLDING"), ("sequence_finished", "done"))
+        for kind, code in told if grip == 1 else (("sequence_finished", "stopped"),):
+            self.event += 1
+            self.send(writer, id=1, event={"id": self.event, "time_s": 1.5, "at": "2026-11-21T09:00:00.000Z", "kind": kind,
+                                           "severity": "information", "text": "t", "code": code, "request": grip})
+
+    def reply(self, writer, number, result):
+        self.send(writer, id=number, ok=True, result=result)
+
+    @staticmethod
+    def send(writer, **said):
+        writer.write(json.dumps(said).encode() + b"\n")
+
+
+class Tasks(unittest.TestCase):
+    def test_a_task_that_waits_during_a_start_gets_the_result_of_this_start(self):
+        asyncio.run(self.wait_during_a_start())
+
+    async def wait_during_a_start(self):
+        daemon = SlowDaemon()
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder) / "daemon.sock")
+            server = await asyncio.start_unix_server(daemon.serve, path)
+            async with softgrip.AsyncGripper(path, name="robot") as robot:
+                await robot.start("pick")
+                self.assertEqual(await robot.wait(timeout_s=5), softgrip.SequenceEnd.DONE)
+                starting = asyncio.create_task(robot.start("pick"))
+                while daemon.requests.count("start") < 2:
+                    await asyncio.sleep(0)
+                holding = asyncio.create_task(robot.wait_until(softgrip.Result.HOLDING, timeout_s=5))
+                ending = asyncio.create_task(robot.wait(timeout_s=5))
+                done, _ = await asyncio.wait({holding, ending}, timeout=0.05)
+                self.assertFalse(done, "the call returned before the reply to the start")
+                daemon.released.set()
+                await starting
+                self.assertEqual(await ending, softgrip.SequenceEnd.STOPPED)
+                with self.assertRaises(softgrip.GripFailed):
+                    await holding
+            server.close()
 
 
 if __name__ == "__main__":

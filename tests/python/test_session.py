@@ -187,6 +187,65 @@ class Starts(unittest.TestCase):
         self.assertEqual(told.session.starts, {own: 3})
         self.assertEqual(told.session.grip, 3)
 
+    def start_again(self, told):
+        """Ends the grip of `told` and sends another start. Returns the id of this start."""
+        told.tell("overall_result", "HOLDING")
+        told.tell("sequence_finished", "done")
+        number, _ = told.session.request("start", {"sequence": "pick"})
+        return number
+
+    def assert_waits(self, told):
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+        self.assertIsNone(told.session.ended())
+
+    def test_a_start_without_a_reply_does_not_have_the_result_of_the_previous_grip(self):
+        told = Events()
+        number = self.start_again(told)
+        self.assert_waits(told)
+        told.session.forget(number)  # start() has raised NotAnswered
+        self.assert_waits(told)
+        told.tell("overall_result", "RELEASED", request=4)
+        told.session.receive(line(id=number, ok=True, result={"request": 4}))
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+        self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)
+        told.tell("sequence_finished", "stopped", request=4)
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.STOPPED)
+
+    def test_the_result_of_the_previous_grip_counts_again_after_a_refused_start(self):
+        for code, restored in (("busy", True), ("owned", True), ("sequence_refused", True), ("no_answer", False)):
+            told = Events()
+            number = self.start_again(told)
+            told.session.receive(line(id=number, ok=False, error={"code": code, "message": "m", "owner": "robot", "problems": []}))
+            if restored:
+                self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+                self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
+            else:
+                self.assert_waits(told)
+
+    def test_a_late_reply_does_not_replace_a_later_start(self):
+        told = Events()
+        first = self.start_again(told)
+        second, _ = told.session.request("start", {"sequence": "pick"})
+        told.session.receive(line(id=second, ok=True, result={"request": 5}))
+        self.assert_waits(told)
+        told.session.receive(line(id=first, ok=True, result={"request": 4}))
+        self.assertEqual(told.session.grip, 5)
+        third, _ = told.session.request("start", {"sequence": "pick"})
+        fourth, _ = told.session.request("start", {"sequence": "pick"})
+        told.session.receive(line(id=third, ok=True, result={"request": 6}))
+        told.tell("sequence_finished", "done", request=6)
+        self.assert_waits(told)
+        told.session.receive(line(id=fourth, ok=False, error={"code": "busy", "message": "m"}))
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
+
+    def test_a_restarted_daemon_ends_a_start_without_a_reply(self):
+        told = Events()
+        self.start_again(told)
+        told.session.subscribed({"since": 0, "started_at": "second"})
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAULTED)
+        with self.assertRaises(softgrip.GripFailed):
+            told.reached(softgrip.Result.HOLDING)
+
     def test_each_start_has_a_unique_id_and_a_dry_run_has_none(self):
         session = Session()
         for _ in range(100):
