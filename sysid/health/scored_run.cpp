@@ -41,24 +41,28 @@ double temperature_of(const sysid::Log& log) {
   return known.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span<double>(known));
 }
 
+/// Returns the reason why a recording is not scored, or an empty text. The reason depends only on run.json.
+std::string skip_reason(const Recording& recording) {
+  if (recording.unfinished) return "the recording is not finished";
+  // A recording of a fault or of a whole day belongs to no sequence, so there are no recordings with which it
+  // can be compared.
+  if (recording.recipe.empty() && !recording.software_version.empty())
+    return "the recording does not belong to a single sequence (with `mode: sequences`, the recorder writes "
+           "one recording per sequence)";
+  return {};
+}
+
 void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores) {
   document::Problems problems;
   const std::string name = name_of(path);
+  // The log of a whole day can be large, so run.json is read first.
+  if (const std::string reason = skip_reason(read_recording_data(path)); !reason.empty()) {
+    scores.skipped.push_back({name, reason});
+    return;
+  }
   const auto recording = read_recording(path, problems);
   if (!recording) {
     scores.skipped.push_back({name, problems.empty() ? recording.error() : problems.list().front().message});
-    return;
-  }
-  if (recording->unfinished) {
-    scores.skipped.push_back({name, "the recording is not finished"});
-    return;
-  }
-  // A recording of a fault or of a whole day belongs to no sequence, so there are no recordings with which it
-  // can be compared.
-  if (recording->recipe.empty() && !recording->software_version.empty()) {
-    scores.skipped.push_back({name,
-                              "the recording does not belong to a single sequence (with `mode: sequences`, "
-                              "the recorder writes one recording per sequence)"});
     return;
   }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
@@ -169,11 +173,21 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     done.insert(run.run);
   }
   for (const auto& [run, finger] : stale) done.erase(run);
+  std::map<std::string, std::string> start_of;
+  for (const ScoredRun& run : known) start_of[run.run] = run.started_at;
+  RunScores scores;
+  const auto skip_namesake = [&](const std::string& path) {
+    scores.skipped.push_back({name_of(path), "another recording has the same name: rename " + path});
+  };
   std::vector<std::string> unread;
   for (const std::string& path : paths) {
-    if (!done.contains(name_of(path))) unread.push_back(path);
+    const auto earlier = start_of.find(name_of(path));
+    const std::string start = earlier == start_of.end() ? std::string() : started_at_of(path);
+    if (!start.empty() && !earlier->second.empty() && start != earlier->second)
+      skip_namesake(path);
+    else if (!done.contains(name_of(path)))
+      unread.push_back(path);
   }
-  RunScores scores;
   std::map<std::string, std::string> path_of;
   for (std::size_t i = 0; i < unread.size(); ++i) {
     end_if_cancelled();
@@ -183,7 +197,7 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     if (is_new)
       score_one(unread[i], base_of, scores);
     else if (first->second != path)
-      scores.skipped.push_back({first->first, "another recording has the same name: rename " + unread[i]});
+      skip_namesake(unread[i]);
   }
   return scores;
 }

@@ -76,7 +76,8 @@ struct RunScores {
 
 /// Scores each recording for which `known` contains no scores with the current baselines. A recording is read
 /// again if a finger without a baseline now has a baseline. An unusable or unfinished recording is added to
-/// `skipped`. If the computation is cancelled, it ends before the next recording.
+/// `skipped`, and also a recording with the name of an earlier recording that started at another time. If the
+/// computation is cancelled, it ends before the next recording.
 /// @param on_recording  may be empty
 [[nodiscard]] RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
                                    const std::vector<ScoredRun>& known, const OnRecording& on_recording = {});

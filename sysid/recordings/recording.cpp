@@ -29,11 +29,14 @@ std::string recipe_of(const json& sequence) {
   return recipe;
 }
 
-/// Adds the data of run.json to a recording. If run.json is missing or truncated, nothing is added.
-void read_story(const std::string& path, Recording& recording) {
-  const auto text = read_file(path, longest_story);
-  if (!text) return;
-  const json story = parse_json<json>(*text);
+/// Returns the content of the run.json of a folder; no object if run.json is missing or truncated.
+json story_in(const std::string& folder) {
+  const auto text = read_file((fs::path(folder) / "run.json").string(), longest_story);
+  return text ? parse_json<json>(*text) : json();
+}
+
+/// Adds the data of run.json to a recording. If there are none, nothing is added.
+void read_story(const json& story, Recording& recording) {
   if (!story.is_object()) return;
   recording.software_version = json_text(story, "software_version");
   recording.started_at = json_text(story, "started_at");
@@ -55,15 +58,13 @@ void read_story(const std::string& path, Recording& recording) {
 }  // namespace
 
 tl::expected<Recording, std::string> read_recording(const std::string& path, document::Problems& problems) {
-  const bool folder = is_folder(path);
   const auto file = log_file_of(path);
   if (!file) return tl::unexpected(file.error());
   const std::string& csv = *file;
   const auto text = read_file(csv, longest_log);
   if (!text) return tl::unexpected(text.error());
 
-  Recording recording;
-  recording.name = fs::path(plain_path(path)).filename().string();
+  Recording recording = read_recording_data(path);
   LogOptions options;
   options.require_motion = false;
   options.need_readings = false;
@@ -75,8 +76,18 @@ tl::expected<Recording, std::string> read_recording(const std::string& path, doc
     if (!log) return tl::unexpected(std::string());
     recording.channels.push_back(std::move(*log));
   }
-  if (folder) read_story((fs::path(path) / "run.json").string(), recording);
   return recording;
+}
+
+Recording read_recording_data(const std::string& path) {
+  Recording recording;
+  recording.name = fs::path(plain_path(path)).filename().string();
+  if (is_folder(path)) read_story(story_in(path), recording);
+  return recording;
+}
+
+std::string started_at_of(const std::string& path) {
+  return read_recording_data(path).started_at;
 }
 
 std::vector<double> numbers_of(const Log& log, const std::string& column) {

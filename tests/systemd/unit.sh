@@ -42,8 +42,11 @@ case $1 in
     # In this copy of the configuration file, files are removed after 1 s instead of 90 days.
     sed 's/90d$/1s/' "$source/softgrip.tmpfiles" >"$root/etc/softgrip.conf"
     sleep 1.5
+    # softgrip-health.service reads recordings every night. This must not prevent their removal.
+    ls "$runs" "$runs/kept" >/dev/null
+    cat "$runs/kept/run.csv"
     systemd-tmpfiles --root="$root" --clean "$root/etc/softgrip.conf"
-    [ ! -e "$runs/kept/run.csv" ]
+    [ ! -e "$runs/kept" ]
     [ -f "$runs/health/notes.yaml" ]
     ;;
   rules)

@@ -114,6 +114,19 @@ TEST_F(FoundRuns, UnfinishedAndNonSequenceRunsAreSkipped) {
   EXPECT_NE(found.skipped[1].why.find("not belong to a single sequence"), std::string::npos);
 }
 
+TEST_F(FoundRuns, TheLogOfARecordingWithoutSequenceIsNotRead) {
+  for (const std::string state : {"complete", "recording"}) {
+    const std::string path =
+        run(state, R"({"software_version": "1", "sequence": null, "state": ")" + state + R"("})");
+    ASSERT_TRUE(write_file(path + "/run.csv", "invalid\n"));
+  }
+  const RunScores found = scores();
+  ASSERT_EQ(found.skipped.size(), 2U);
+  EXPECT_NE(found.skipped[0].why.find("not belong to a single sequence"), std::string::npos)
+      << found.skipped[0].why;
+  EXPECT_EQ(found.skipped[1].why, "the recording is not finished");
+}
+
 TEST_F(FoundRuns, ASecondRecordingWithTheSameNameIsSkippedWithAReason) {
   (void)run("one/grip", "");
   (void)run("two/grip", "");
@@ -125,6 +138,20 @@ TEST_F(FoundRuns, ASecondRecordingWithTheSameNameIsSkippedWithAReason) {
   ASSERT_EQ(found.skipped.size(), 1U) << "the same recording twice is no second recording";
   EXPECT_EQ(found.skipped[0].run, "grip");
   EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + two + "/grip");
+}
+
+TEST_F(FoundRuns, ARecordingWithTheNameOfAnEarlierRecordingIsSkippedWithAReason) {
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const auto base_of = [&](const std::string&) { return &base; };
+  const std::string first = run("one/grip", R"({"started_at": "2026-11-30T07:00:00Z", "state": "complete"})");
+  const RunScores earlier = score_runs({first}, base_of, {});
+  ASSERT_EQ(earlier.runs.size(), 1U);
+  const std::string second =
+      run("two/grip", R"({"started_at": "2026-11-30T08:00:00Z", "state": "complete"})");
+  const RunScores found = score_runs({first, second}, base_of, earlier.runs);
+  EXPECT_TRUE(found.runs.empty());
+  ASSERT_EQ(found.skipped.size(), 1U);
+  EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + second);
 }
 
 TEST_F(FoundRuns, ASeparatorAtTheEndOfAPathDoesNotChangeTheName) {

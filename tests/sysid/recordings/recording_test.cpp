@@ -43,5 +43,18 @@ TEST_F(RecordingTest, NamedPipeIsNotWaitedFor) {
   EXPECT_NE(recording.error().find("run.csv"), std::string::npos) << recording.error();
 }
 
+TEST_F(RecordingTest, DataOfRunJsonAreReadWithoutTheLog) {
+  write("run.csv", "hello\n");
+  write("run.json", R"({"software_version": "1", "started_at": "2026-11-30T07:00:00Z", "state": "recording",
+                        "sequence": {"name": "pick", "sha256": "0123456789"}})");
+  const Recording data = read_recording_data(folder);
+  EXPECT_EQ(data.name, folder.filename());
+  EXPECT_EQ(data.started_at, "2026-11-30T07:00:00Z");
+  EXPECT_EQ(data.recipe, "pick 01234567");
+  EXPECT_TRUE(data.unfinished);
+  EXPECT_TRUE(data.channels.empty());
+  EXPECT_EQ(read_recording_data(folder / "run.csv").started_at, "");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::recording_test
