@@ -57,7 +57,8 @@ def found_in(task, out):
     """Returns a short text about a result, for the page."""
     if task == "identify":
         told = read_json(out / "identify.json")
-        return ", ".join(f"{value:.3g} mm" for value in told.get("rmse_mm", {}).values() if isinstance(value, float))
+        unit = told.get("output_unit", "mm")
+        return ", ".join(f"{value:.3g} {unit}" for value in told.get("rmse_mm", {}).values() if isinstance(value, float))
     if task == "diagnose":
         told = read_json(out / "diagnosis.json")
         return ": ".join([told.get("verdict", ""), ", ".join(cause["id"] for cause in told.get("causes", []))]).strip(": ")

@@ -6,7 +6,7 @@
 workflows/table.py describes the table. The same command continues an interrupted run. A finished row is run a second
 time only if its line or a file that it reads has changed. With --again, rows that have failed are also run a second
 time. The results are DIR/overview.html, DIR/overview.json, and for each row DIR/TASK/NAME/ with row.json and result/.
-Exit codes: 0 all rows done, 1 the workflow was stopped, 2 usage, 3 the table is refused, 4 Snakemake is missing, 5
+Exit codes: 0 all rows done, 1 the workflow was stopped, 2 usage, 3 the table is refused, 4 a program is missing, 5
 another run uses DIR, 6 some rows failed or have results that are not acceptable.
 """
 import argparse
@@ -42,11 +42,17 @@ def arguments():
 
 
 def program_of(args):
+    """Returns the absolute path of softgrip, because each row runs in the folder of the table; None if softgrip does not
+    exist. With --slurm, a name without a folder is returned unchanged, because the machines of the cluster search for it."""
     built = args.build.resolve() / "tools/softgrip"
-    return args.program or (str(built) if built.exists() else "softgrip")
+    program = args.program or (str(built) if built.exists() else "softgrip")
+    if args.slurm and "/" not in program:
+        return program
+    found = shutil.which(program)
+    return found and str(pathlib.Path(found).resolve())
 
 
-def snakemake(args, *more):
+def snakemake(args, program, *more):
     words = ["snakemake", "--snakefile", HERE / "Snakefile", "--directory", args.out.resolve(), "--quiet",
              "rules" if args.progress else "all", "--rerun-incomplete", "--rerun-triggers", "mtime", "params", "input",
              "--nolock"]
@@ -55,7 +61,7 @@ def snakemake(args, *more):
                   "--cores", args.threads]
     else:
         words += ["--cores", args.cores]
-    config = {"table": args.table.resolve(), "program": program_of(args), "build": args.build.resolve(),
+    config = {"table": args.table.resolve(), "program": program, "build": args.build.resolve(),
               "threads": args.threads, "most_minutes": args.most_minutes, "until": f"{args.until:.0f}"}
     words += [*more, "--config", *(f"{key}={value}" for key, value in config.items())]
     return subprocess.run([str(word) for word in words], stdin=subprocess.DEVNULL, check=False).returncode
@@ -81,6 +87,10 @@ def main():
     if not shutil.which("snakemake"):
         print("snakemake is missing: apt install snakemake (scripts/packages.sh workflows)", file=sys.stderr)
         return 4
+    program = program_of(args)
+    if not program and any(row.task != "world" for row in rows):
+        print(f"{args.program or 'softgrip'}: no such program; --program states its path", file=sys.stderr)
+        return 4
     args.out.mkdir(parents=True, exist_ok=True)
     # When Snakemake is killed, its own lock file remains. The kernel releases this lock when the process
     # ends.
@@ -93,7 +103,7 @@ def main():
         if args.again:
             for told in failed_rows(args, rows):
                 told.unlink()
-        if snakemake(args) != 0:
+        if snakemake(args, program or "softgrip") != 0:
             print(f"stopped; the same command goes on: {sum((args.out / r.result()).exists() for r in rows)} of "
                   f"{len(rows)} rows are there", file=sys.stderr)
             return 1

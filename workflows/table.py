@@ -67,16 +67,29 @@ class Row:
     def inputs(self):
         """Returns the existing files and folders that the row reads. If one of them changes, the row is run a second
         time."""
-        found = [log / "run.csv" if (log / "run.csv").exists() else log for log in self.logs()]
+        found = [file_of(log) for log in self.logs()]
         found += [self.path(column) for column in ("model", "rig") if self.get(column)]
         other = self.other_baseline()
         if self.get("baseline") and not other:
-            found.append(self.path("baseline") / "baseline.json")
+            folder = self.path("baseline")  # each finger can have its own baseline in a folder with its name
+            found += [folder / "baseline.json", *sorted(folder.glob("*/baseline.json"))]
+        found += self.files_in_options()
         return [str(path) for path in found if path.exists()] + ([self.result(other)] if other else [])
+
+    def files_in_options(self):
+        """Returns the files that the words of the options name, also in a word such as --validate=FILE."""
+        words = [word.partition("=")[2] if word.startswith("--") else word for word in shlex.split(self.get("options"))]
+        found = [file_of(self.folder / word) for word in words if word]
+        return [path for path in found if path.is_file()]
 
     def text(self):
         """Returns the cells of the row as text. If this text changes, the row is run a second time."""
         return json.dumps([self.get(column) for column in COLUMNS])
+
+
+def file_of(log):
+    """Returns run.csv if the log is the folder of a recording, otherwise the path of the log."""
+    return log / "run.csv" if (log / "run.csv").exists() else log
 
 
 def problems_of(row, seen):

@@ -43,9 +43,9 @@ class Workflow(unittest.TestCase):
         for name in names:
             (self.folder / name).write_text(self.log)
 
-    def run_table(self, table, *arguments, expect=0):
+    def run_table(self, table, *arguments, expect=0, cwd=None):
         done = subprocess.run([sys.executable, RUN, table, "--out", self.folder / "out", "--cores", "2", "--build", BUILD,
-                               *arguments], capture_output=True, text=True, timeout=100)
+                               *arguments], capture_output=True, text=True, timeout=100, cwd=cwd)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
 
@@ -125,6 +125,48 @@ class Workflow(unittest.TestCase):
         path = self.folder / "other.csv"
         path.write_text(text)
         return path
+
+    def write_program(self, name):
+        """Writes a program that accepts any command and computes nothing."""
+        path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/sh\nexit 0\n")
+        path.chmod(0o755)
+        return path
+
+    def test_a_changed_baseline_or_file_in_the_options_repeats_its_row(self):
+        self.small_logs("a.csv", "other.csv", "again.csv")
+        files = [self.folder / name for name in ("baselines/left/baseline.json", "notes.yaml", "again.csv", "run/run.csv")]
+        for file in files:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(self.log)
+        table = self.table(("month", "health", "a.csv", "", "baselines", "--notes notes.yaml"),
+                           ("finger", "baseline", "a.csv", "", "", "--check run --gauge=again.csv"),
+                           ("other", "identify", "other.csv", "", "", "--starts 3"))
+        arguments = ("--program", str(self.write_program("tool")))
+        self.run_table(table, *arguments)
+        repeated = ["health/month", "health/month", "baseline/finger", "baseline/finger", "health/month"]
+        for file, row in zip([*files, self.folder / "baselines/right/baseline.json"], repeated):
+            with self.subTest(file=file.name):
+                before = self.written()
+                file.parent.mkdir(exist_ok=True)
+                file.write_text(self.log + "\n")
+                self.run_table(table, *arguments)
+                self.assertEqual({name for name, when in self.written().items() if when != before[name]}, {f"{row}/row.json"})
+
+    def test_the_error_of_a_log_in_degrees_has_this_unit(self):
+        (self.folder / "angle.csv").write_text(self.log.replace("displacement_mm", "angle_deg", 1))
+        self.run_table(self.table(("a", "identify", "angle.csv", "", "", "--starts 3")))
+        self.assertRegex(self.told("identify", "a")["found"], r"^0\.0\d+ deg$")
+
+    def test_the_path_of_the_program_is_relative_to_the_working_folder(self):
+        self.small_logs("a.csv")
+        program = self.write_program("bin/tool")
+        table = self.table(("a", "identify", "a.csv", "", "", ""))
+        said = self.run_table(table, "--program", "./missing", expect=4, cwd=program.parent).stderr
+        self.assertIn("./missing: no such program", said)
+        self.run_table(table, "--program", "./tool", cwd=program.parent)
+        self.assertEqual(self.told("identify", "a")["command"][0], str(program.resolve()))
 
     def test_simulated_cases_are_rows_and_no_row_starts_after_its_deadline(self):
         self.small_logs("a.csv")
