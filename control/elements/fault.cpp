@@ -65,6 +65,12 @@ constexpr std::array faults{
               "Find the leak; check supply, valve and pressure sensor.",
               "pressure_cycles cycles in which the measured pressure is outside the range of the commands of "
               "the last pressure_delay_s by more than pressure_tolerance_kpa"},
+    FaultInfo{FaultCode::pressure_invalid, "F208", "pressure_invalid",
+              "The signal of the pressure monitor was not valid.",
+              "broken wire, pressure monitor without power, wrong scaling",
+              "Measure the electrical signal of the pressure monitor. Without a working pressure monitor, a "
+              "burst line and a part lost by pressure are not detected.",
+              "invalid_reading_cycles"},
     FaultInfo{FaultCode::readback_mismatch, "F301", "readback_mismatch",
               "The board's output differs from the written value.",
               "another Modbus client, a board in manual mode, a wrong scaling of the output",

@@ -26,6 +26,7 @@ enum class FaultCode : std::uint16_t {
   displacement_beyond_limits = 206,
   pressure_not_followed = 207,  ///< the measured pressure has differed from all recent commands for
                                 ///< pressure_cycles cycles
+  pressure_invalid = 208,       ///< the pressure monitor of a channel gives no valid reading
   readback_mismatch = 301,      ///< the output that the board reports differs from the command that was
                                 ///< written
   write_refused = 302,          ///< the board rejected the command that was written

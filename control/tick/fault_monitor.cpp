@@ -53,6 +53,7 @@ FaultMonitor::FaultMonitor(const RigSettings& settings)
       settings.faults.pressure_cycles > 0 ? std::max(readback_window_, pressure_window_) : readback_window_;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     displacement_used_.push_back(settings.channels[i].displacement_used);
+    pressure_measured_.push_back(settings.channels[i].pressure_measured);
     channels_[i].sent_kpa.assign(ring, resting_kpa(settings.channels[i].limits));
   }
 }
@@ -109,10 +110,15 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
                             off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);
   channel.readback_cycles = readback_off ? channel.readback_cycles + 1 : 0;
   const bool unsteady = settings_.unsteady_is_fault && seen.unsteady;
-  const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
-  const Fault of_pressure{.code = FaultCode::pressure_not_followed,
-                          .channel = number,
-                          .value = input.readings[index].pressure_kpa};
+  const double pressure_kpa = input.readings[index].pressure_kpa;
+  const bool pressure_off = pressure_due(channel, pressure_kpa, starting);
+  const bool pressure_invalid =
+      pressure_measured_[index] && bus_good() && !starting && !std::isfinite(pressure_kpa);
+  channel.pressure_invalid_cycles = pressure_invalid ? channel.pressure_invalid_cycles + 1 : 0;
+  const Fault of_pressure{.code = FaultCode::pressure_not_followed, .channel = number, .value = pressure_kpa};
+  const Fault of_pressure_monitor{.code = FaultCode::pressure_invalid,
+                                  .channel = number,
+                                  .value = static_cast<double>(channel.pressure_invalid_cycles)};
   const Fault of_readback{.code = FaultCode::readback_mismatch, .channel = number, .value = readback};
   const Fault of_jumps{.code = FaultCode::reading_jumped, .channel = number, .value = seen.jump_mm};
   if (channel.invalid_cycles > 0)
@@ -123,11 +129,13 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   }
   if (readback_off) note_cause(of_readback);
   if (channel.pressure_cycles > 0) note_cause(of_pressure);
+  if (pressure_invalid) note_cause(of_pressure_monitor);
   if (unsteady) note_cause(of_jumps);
   if (of_reading.code != FaultCode::none) return of_reading;
   if (unsteady) return of_jumps;
   if (readback_off && channel.readback_cycles >= settings_.readback_cycles) return of_readback;
   if (pressure_off) return of_pressure;
+  if (channel.pressure_invalid_cycles >= settings_.invalid_reading_cycles) return of_pressure_monitor;
   if (settings_.model_unfit_is_fault && seen.health_changed && seen.health == HealthState::unfit) {
     return {.code = FaultCode::model_unfit, .channel = number, .value = seen.health_rms_mm};
   }
@@ -152,10 +160,10 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelO
 }
 
 /// Returns true if the measured pressure has differed from the commands for pressure_cycles cycles. A cycle
-/// without an exchange does not change the number of cycles. Therefore, an unreliable connection cannot hide
-/// a burst pressure line. A channel without a measured pressure never differs from its commands. For a time
-/// after start-up and after a bus fault, the pressure is not checked, because the finger may still have an
-/// earlier pressure.
+/// without an exchange or without a valid pressure does not change the number of cycles. Therefore, an
+/// unreliable connection or pressure monitor cannot hide a burst pressure line. A channel without a measured
+/// pressure never differs from its commands. For a time after start-up and after a bus fault, the pressure is
+/// not checked, because the finger may still have an earlier pressure.
 bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
   if (settings_.pressure_cycles == 0) return false;
   if (starting || bus_cycles_ >= settings_.bus_down_cycles) {
@@ -165,7 +173,8 @@ bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool star
   }
   if (!bus_good()) return false;
   if (channel.pressure_grace > 0) --channel.pressure_grace;
-  const bool wrong = std::isfinite(pressure_kpa) && channel.pressure_grace == 0 &&
+  if (!std::isfinite(pressure_kpa)) return false;
+  const bool wrong = channel.pressure_grace == 0 &&
                      off(channel, pressure_kpa, pressure_window_, settings_.pressure_tolerance_kpa);
   channel.pressure_cycles = wrong ? channel.pressure_cycles + 1 : 0;
   return channel.pressure_cycles >= settings_.pressure_cycles;

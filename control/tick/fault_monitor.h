@@ -36,6 +36,7 @@ class FaultMonitor {
     std::uint32_t beyond_cycles = 0;
     std::uint32_t readback_cycles = 0;
     std::uint32_t pressure_cycles = 0;
+    std::uint32_t pressure_invalid_cycles = 0;
     std::uint32_t pressure_grace = 0;  ///< number of cycles in which the measured pressure may still have an
                                        ///< earlier value
     std::vector<double> sent_kpa;      ///< ring buffer of the past commands that covers the longest window
@@ -57,6 +58,7 @@ class FaultMonitor {
                                      ///< including the newest command
   std::size_t pressure_window_ = 0;
   std::vector<bool> displacement_used_;
+  std::vector<bool> pressure_measured_;
   std::vector<Channel> channels_;
   std::size_t ring_at_ = 0;
   std::uint32_t bus_cycles_ = 0;

@@ -23,6 +23,7 @@ TEST(Faults, CodesAreStable) {
                                                                   {"F205", "reading_frozen"},
                                                                   {"F206", "displacement_beyond_limits"},
                                                                   {"F207", "pressure_not_followed"},
+                                                                  {"F208", "pressure_invalid"},
                                                                   {"F301", "readback_mismatch"},
                                                                   {"F302", "write_refused"},
                                                                   {"F303", "board_watchdog_tripped"},
