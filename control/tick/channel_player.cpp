@@ -22,6 +22,16 @@ bool append_ramp(Reference& reference, const Target& target, double value) noexc
   return true;
 }
 
+/// Appends a segment with function(reference). If the reference has no space for the segment, past segments
+/// are discarded first. Their number grows with many short steps. Returns false if the segment is not
+/// permitted.
+template <class Function>
+bool append(Reference& reference, double time_s, const Function& function) noexcept {
+  if (function(reference)) return true;
+  reference.forget_before(time_s);
+  return function(reference);
+}
+
 /// Returns the target with another value. The ramp has the same speed or duration.
 Target with_value(Target target, double value) noexcept {
   target.value = value;
@@ -33,6 +43,7 @@ Target with_value(Target target, double value) noexcept {
 void ChannelPlayer::reset() noexcept {
   step_ = nullptr;
   stage_ = Stage::done;
+  profile_ = squeezing_ = false;
   freeze();
   bounds_ = {};
   contact_.reset();
@@ -64,9 +75,12 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
   if (step.kind != StepKind::hold) {
     plan_ = plan;
     plan_origin_s_ = plan != nullptr ? time_s - plan->begin_s : 0;
-    profile_ = squeezing_ = stopped_by_contact_ = false;
     bounds_ = {};
+  } else if (profile_ || squeezing_) {
+    // The profile and the gripping pressure belong to the previous step. The hold keeps the last command.
+    stay_at(pressure_kpa_, time_s);
   }
+  profile_ = squeezing_ = stopped_by_contact_ = false;
   met_ = verified_ = false;
   contact_met_.reset();
   bounds_.pressure_max_kpa = std::min(bounds_.pressure_max_kpa, step.bounds.pressure_max_kpa);
@@ -97,14 +111,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::watch;
       break;
     case StepKind::track:
-      displacement_.forget_before(time_s - kept_s);
-      start_ = {Target::Quantity::displacement_mm, displacement_.value_at(time_s)};
-      start_.speed = 2 * std::numbers::pi * step.sine.frequency_hz * step.sine.amplitude_mm;
-      displacement_.cut(time_s + traits_.preview_s);
-      displacement_.sine(step.sine.mean_mm, step.sine.amplitude_mm, step.sine.frequency_hz, step.sine.cycles);
-      stage_end_s_ = displacement_.end_s();
       closing_ = true;
-      stage_ = Stage::profile;
+      stage_ = begin_track(step.sine, time_s) ? Stage::profile : Stage::failed;
       break;
     case StepKind::pressure:
       mode_ = Mode::pressure;
@@ -116,6 +124,21 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::profile;
       break;
   }
+}
+
+/// Appends the sine of a track step to the reference. Returns false if the finger does not follow the
+/// reference, for example because an object stopped it in the previous step.
+bool ChannelPlayer::begin_track(const Sine& sine, double time_s) noexcept {
+  displacement_.forget_before(time_s - kept_s);
+  start_ = {Target::Quantity::displacement_mm, displacement_.value_at(time_s)};
+  start_.speed = 2 * std::numbers::pi * sine.frequency_hz * sine.amplitude_mm;
+  if (mode_ != Mode::displacement) return false;
+  displacement_.cut(time_s + traits_.preview_s);
+  const bool appended = append(displacement_, time_s, [&](Reference& reference) {
+    return reference.sine(sine.mean_mm, sine.amplitude_mm, sine.frequency_hz, sine.cycles);
+  });
+  stage_end_s_ = displacement_.end_s();
+  return appended;
 }
 
 /// Starts the ramp to a target. A displacement ramp starts at the present reference, or at the displacement
@@ -140,10 +163,7 @@ double ChannelPlayer::go_to(const Target& target, double value, double time_s,
     start = seen.displacement_mm;
     mode_ = Mode::displacement;
   }
-  if (!append_ramp(reference, target, value)) {
-    reference.forget_before(time_s);  // discard past segments, whose number grows with many short steps
-    append_ramp(reference, target, value);
-  }
+  append(reference, time_s, [&](Reference& own) { return append_ramp(own, target, value); });
   ramp_end_s_ = reference.end_s();
   return start;
 }
@@ -223,6 +243,8 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
       return time_s >= stage_end_s_ ? pass() : Progress::pending;
     case Stage::back:
       return time_s >= ramp_end_s_ + step_->settle_s ? pass() : Progress::pending;
+    case Stage::failed:
+      return Progress::failed;
     case Stage::done:
       break;
   }

@@ -98,9 +98,11 @@ class ChannelPlayer {
     free,
     profile,
     back,
+    failed,
     done,
   };
 
+  [[nodiscard]] bool begin_track(const Sine& sine, double time_s) noexcept;
   double go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
   void feel(const ChannelOutput& seen, bool watched) noexcept;
   bool watch(double time_s, const ChannelOutput& seen) noexcept;

@@ -294,6 +294,88 @@ TEST_F(ContactTest, AHoldLastsUntilTheReleaseRequest) {
   EXPECT_EQ(end->detail, Event::Detail(SequenceEnd::done));
 }
 
+/// A grip that ends at its timeout while the gripping pressure still rises.
+const std::string unfinished_squeeze =
+    "  - grip: {pressure_kpa: 55, speed_kpa_per_s: 20, squeeze_kpa: 20, squeeze_speed_kpa_per_s: 2, "
+    "settle_s: 0.2, timeout_s: 6, on_fail: continue, verify: {by: detection, window_s: 0.2}}\n";
+
+TEST_F(ContactTest, AHoldKeepsThePressureOfAnUnfinishedSqueeze) {
+  const PreparedSequence sequence =
+      steps(unfinished_squeeze + "  - hold: {hold_s: 2, reverify_every_s: 0.2, on_fail: hold}\n");
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  ASSERT_TRUE(rig.start_until_step(sequence, 1));
+  const double held_kpa = rig.output().channels[0].command_kpa;
+  EXPECT_GT(held_kpa, 20);
+  rig.run(1.5);
+  EXPECT_NEAR(rig.output().channels[0].command_kpa, held_kpa, 0.5);
+  EXPECT_NEAR(rig.output().channels[1].command_kpa, held_kpa, 2);
+}
+
+TEST_F(ContactTest, AHoldDoesNotContinueTheSqueezeOfAnEarlierSequence) {
+  for (ChannelSettings& channel : settings.channels) {
+    channel.limits.rest_kpa = 10;
+    channel.limits.pressure_min_kpa = -40;
+    channel.limits.displacement_min_mm = -30;
+  }
+  const PreparedSequence squeeze = steps(unfinished_squeeze);
+  const PreparedSequence hold = steps(
+      "  - grip: {channels: [left], pressure_kpa: 40, duration_s: 1, settle_s: 0.5, timeout_s: 20, on_fail: "
+      "hold, verify: {by: position, window_s: 0.2, displacement_min_mm: 1, displacement_max_mm: 34}}\n"
+      "  - hold: {channels: [left, right], hold_s: 1, reverify_every_s: 0.2, on_fail: hold}\n");
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  ASSERT_TRUE(rig.start(squeeze));
+  rig.run(4);
+  ASSERT_GT(rig.output().channels[1].squeeze_kpa, 1) << "the gripping pressure rises";
+  rig.request(Request::Kind::stop);
+  rig.run(0.1);
+  rig.stone(std::nullopt);
+  rig.run(1);
+  rig.request(Request::Kind::vent);
+  rig.run(3);
+  EXPECT_NEAR(rig.output().channels[1].command_kpa, 10, 0.1);
+  ASSERT_TRUE(rig.start_until_step(hold, 1));
+  rig.run(0.5);
+  EXPECT_NEAR(rig.output().channels[1].command_kpa, 10, 0.1)
+      << "the vented finger stays at its rest pressure";
+}
+
+TEST_F(ContactTest, AHoldAfterAMoveThatMetAPartLastsAsLongAsRequested) {
+  for (const std::string end : {"hold_s: 3", "until: release"}) {
+    SCOPED_TRACE(end);
+    const PreparedSequence sequence = steps(
+        "  - grip: {pressure_kpa: 20, speed_kpa_per_s: 20, settle_s: 0.5, timeout_s: 20, on_fail: continue, "
+        "verify: {by: detection, window_s: 0.2}}\n"
+        "  - move: {pressure_kpa: 50, speed_kpa_per_s: 10, on_contact: hold}\n"
+        "  - hold: {" +
+        end +
+        ", reverify_every_s: 0.2, on_fail: hold}\n"
+        "  - release: {duration_s: 1, purge_s: 0.5, timeout_s: 10, on_fail: vent}\n");
+    SimulatedRig rig(settings);
+    rig.stone(12);
+    ASSERT_TRUE(rig.start_until_step(sequence, 2));
+    EXPECT_EQ(contacts(rig, OnContact::hold), 2U);
+    const double held_kpa = rig.output().channels[0].command_kpa;
+    rig.run(2.5);
+    EXPECT_EQ(rig.output().channels[0].step, 2);
+    EXPECT_NEAR(rig.output().channels[0].command_kpa, held_kpa, 1);
+    if (end == "until: release") rig.request(Request::Kind::release);
+    EXPECT_TRUE(rig.run_until_step(3, 2));
+  }
+}
+
+TEST_F(ContactTest, ATrackFailsIfAPartStoppedThePreviousMove) {
+  const PreparedSequence sequence = steps(
+      "  - move: {displacement_mm: 14, speed_mm_per_s: 5, settle_s: 1}\n"
+      "  - track: {mean_mm: 16, amplitude_mm: 2, frequency_hz: 0.5, cycles: 2}\n");
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  play(rig, sequence);
+  EXPECT_EQ(rig.result(0), GripResult::error);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+}
+
 TEST_F(ContactTest, NoPressureRisesAfterAReleaseRequestInAnyStep) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   const PreparedSequence grip = steps(

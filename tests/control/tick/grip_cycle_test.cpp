@@ -123,6 +123,26 @@ TEST_F(GripCycle, APressureGripReportsHoldingAndReleased) {
   EXPECT_EQ(rig.result(0), GripResult::released);
 }
 
+TEST_F(GripCycle, AHoldKeepsTheLastPressureOfAPressureStep) {
+  const PreparedSequence sequence = sequence_of(
+      "name: x\nsteps:\n"
+      "  - grip: {pressure_kpa: 42, speed_kpa_per_s: 20, settle_s: 0.5, timeout_s: 20, on_fail: vent, "
+      "verify: {by: "
+      "detection, window_s: 0.2}}\n"
+      "  - pressure: {points: [{time_s: 0, pressure_kpa: 42}, {time_s: 1, pressure_kpa: 48}]}\n"
+      "  - hold: {hold_s: 3, reverify_every_s: 0.2, on_fail: hold}\n",
+      settings);
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  ASSERT_TRUE(rig.start_until_step(sequence, 2));
+  rig.run(2.5);
+  EXPECT_EQ(rig.output().channels[0].step, 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(rig.output().channels[i].command_kpa, 48, 0.1);
+    EXPECT_EQ(rig.result(i), GripResult::holding);
+  }
+}
+
 TEST_F(GripCycle, AnObjectOutsideThePositionWindowIsNoPart) {
   const PreparedSequence screw = example_sequence("pick_screw", settings);
   SimulatedRig rig(settings);

@@ -144,6 +144,26 @@ TEST_F(SequencePlayback, EachOf100ShortStepsReachesTheTarget) {
   EXPECT_EQ(step, 99);
 }
 
+TEST_F(SequencePlayback, ATrackAfterShortMovesIsExecutedCompletely) {
+  for (int moves = 3; moves <= 8; ++moves) {
+    for (const std::string duration_s : {"0.02", "0.05", "0.08", "0.1", "0.15"}) {
+      SCOPED_TRACE(std::to_string(moves) + " moves of " + duration_s + " s");
+      std::string text = "  - move: {displacement_mm: 9, duration_s: 1, settle_s: 1}\n";
+      for (int i = 1; i <= moves; ++i) {
+        text += "  - move: {displacement_mm: " + std::to_string(8 + (moves - i) % 2) +
+                ", duration_s: " + duration_s + "}\n";
+      }
+      text += "  - track: {mean_mm: 9, amplitude_mm: 1, frequency_hz: 0.5, cycles: 1}\n";
+      SimulatedRig rig(settings);
+      ASSERT_TRUE(rig.start_until_step(steps(text), static_cast<std::uint16_t>(moves + 1)));
+      const double start_s = rig.time_s();
+      ASSERT_TRUE(rig.run_until(State::idle, 10));
+      EXPECT_GE(rig.time_s() - start_s, 2);
+      EXPECT_EQ(end_of(rig), SequenceEnd::done);
+    }
+  }
+}
+
 TEST_F(SequencePlayback, TheReferenceIsContinuousBetweenSteps) {
   const PreparedSequence sequence = steps(
       "  - move: {displacement_mm: 8, speed_mm_per_s: 15}\n"
