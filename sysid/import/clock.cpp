@@ -4,15 +4,16 @@
 #include <cmath>
 #include <span>
 
+#include "base/numbers.h"
 #include "base/statistics.h"
 #include "sysid/import/fingers.h"
+#include "sysid/import/missing_codes.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/role_fit.h"
 
 namespace softgrip::sysid {
 namespace {
 
-constexpr double day_s = 86400;
 /// Largest time step across an overflow, as a multiple of the usual step of the clock. If the step is larger
 /// than this, rows may be missing, so the overflow is not corrected.
 constexpr double longest_step = 3;
@@ -128,14 +129,17 @@ std::array<std::size_t, role_count> columns_of_roles(const ForeignTable& table, 
 }  // namespace
 
 std::optional<Overflow> continue_overflows(std::vector<double>& clock, double unit_s) {
-  const std::vector<double> steps = steps_of(clock);
-  if (std::none_of(steps.begin(), steps.end(), [](double step) { return step < 0; })) return std::nullopt;
-  const double step = usual_step(clock);
   std::vector<double> periods;
   for (const double bits : {16.0, 24.0, 32.0}) {
     for (const double part : {1.0, 1e-3, 1e-6}) periods.push_back(std::exp2(bits) * part);
   }
   if (unit_s > 0) periods.push_back(day_s / unit_s);
+  return continue_overflows(clock, periods);
+}
+
+std::optional<Overflow> continue_overflows(std::vector<double>& clock, std::span<const double> periods) {
+  if (!goes_back(clock)) return std::nullopt;
+  const double step = usual_step(clock);
   const auto found = std::find_if(periods.begin(), periods.end(),
                                   [&](double period) { return explains(clock, period, step); });
   if (step <= 0 || found == periods.end()) return std::nullopt;
@@ -151,6 +155,24 @@ std::optional<Overflow> continue_overflows(std::vector<double>& clock, double un
   return overflow;
 }
 
+bool goes_back(const std::vector<double>& clock) {
+  const std::vector<double> steps = steps_of(clock);
+  return std::any_of(steps.begin(), steps.end(), [](double step) { return step < 0; });
+}
+
+std::string about_overflow(const ForeignTable& table, std::size_t column, const Overflow& overflow,
+                           std::size_t row) {
+  const bool has_lines = row < table.line.size();
+  const bool is_text = table.columns[column].moments > 0;
+  const std::string where = !is_text                    ? written(overflow.period)
+                            : overflow.period == hour_s ? "the end of an hour"
+                                                        : "midnight";
+  return "the clock overflows at " + where + ", " + std::to_string(overflow.count) +
+         (overflow.count == 1 ? " time" : " times") + ", first in " + (has_lines ? "line " : "sample ") +
+         std::to_string(has_lines ? static_cast<std::size_t>(table.line[row]) : row + 1) + " of '" +
+         document::shown(word_of(table, column), 40) + "', and the times after each overflow are corrected";
+}
+
 std::vector<std::size_t> time_columns(const ForeignTable& table) {
   std::vector<std::size_t> times;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -162,14 +184,16 @@ std::vector<std::size_t> time_columns(const ForeignTable& table) {
 }
 
 std::optional<std::vector<double>> seconds_of(const ForeignTable& table, const Mapping& mapping,
-                                              std::size_t column) {
-  std::vector<double> values = table.columns[column].values;
+                                              std::size_t column, std::optional<Overflow>* overflow) {
+  std::vector<double> values = without_codes(table, mapping, column);
   double factor = 1;
+  if (overflow != nullptr) overflow->reset();
   if (table.columns[column].moments == 0) {
     const auto unit = unit_named(time_unit(table, mapping, column), Quantity::time);
     if (!unit) return std::nullopt;
     factor = unit->factor;
-    (void)continue_overflows(values, factor);
+    const auto found = continue_overflows(values, factor);
+    if (overflow != nullptr) *overflow = found;
   }
   const double begin_s = seconds(table.columns[column].first_moment);
   for (double& value : values) value = begin_s + factor * value;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,22 +20,40 @@ struct Overflow {
   double period = 0;      ///< range of the counter, in the unit of the clock
 };
 
-/// Corrects the overflows of a clock: adds the period of each overflow to all later values. Possible periods
-/// are the range of a counter with 16, 24 or 32 bits, and one day. One count of the counter is the unit of
-/// the clock, 1/1000 of this unit or 1/1,000,000 of this unit. If no period explains all backward steps of
-/// the clock, the clock is not changed.
+inline constexpr double hour_s = 3600;
+inline constexpr double day_s = 86400;
+
+/// Returns true if a value of the clock is less than the value before it. Missing values are ignored.
+[[nodiscard]] bool goes_back(const std::vector<double>& clock);
+
+/// Corrects the overflows of a clock: adds the period of each overflow to all later values. The first of
+/// `periods` that explains all backward steps of the clock is used. If no period explains them, the clock is
+/// not changed.
+/// @param periods  possible periods, in the unit of the clock.
+std::optional<Overflow> continue_overflows(std::vector<double>& clock, std::span<const double> periods);
+
+/// Corrects the overflows of a clock of numbers. Possible periods are the range of a counter with 16, 24 or
+/// 32 bits, and one day. One count of the counter is the unit of the clock, 1/1000 of this unit or
+/// 1/1,000,000 of this unit.
 /// @param unit_s  unit of the clock [s].
 std::optional<Overflow> continue_overflows(std::vector<double>& clock, double unit_s);
+
+/// Returns the note about the corrected overflows of the clock in column `column` of the table.
+/// @param row  row of the table with the first value after the first overflow.
+[[nodiscard]] std::string about_overflow(const ForeignTable& table, std::size_t column,
+                                         const Overflow& overflow, std::size_t row);
 
 /// Returns the indices of the columns that probably contain times. Such a column contains dates, times of
 /// day, or increasing numbers. A column of increasing numbers is included only if its name or its unit is
 /// that of a time.
 [[nodiscard]] std::vector<std::size_t> time_columns(const ForeignTable& table);
 
-/// Returns the values of a time column [s]; NaN for a missing value. Returns nullopt if the unit of the
-/// column is unknown.
+/// Returns the values of a time column [s]; NaN for a missing value. Overflows are corrected. Returns nullopt
+/// if the unit of the column is unknown.
+/// @param overflow  if not null: receives the corrected overflows; nullopt if there are none.
 [[nodiscard]] std::optional<std::vector<double>> seconds_of(const ForeignTable& table, const Mapping& mapping,
-                                                            std::size_t column);
+                                                            std::size_t column,
+                                                            std::optional<Overflow>* overflow = nullptr);
 
 /// Returns true if two columns contain the times of the same clock: their values are equal, or the clocks
 /// have different origins. Different origins are assumed if the difference is constant and larger than the

@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "sysid/import/clock.h"
+#include "sysid/import/missing_codes.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/role_sources.h"
 #include "sysid/import/row_groups.h"
@@ -60,29 +61,23 @@ class Converter {
   }
 
   /// Returns the codes for missing values of each column of the table.
-  [[nodiscard]] std::vector<std::vector<double>> missing_codes() const {
-    std::vector<double> of_all;
-    for (const std::string& word : mapping_.missing) {
-      if (const auto number = missing_number(word)) of_all.push_back(*number);
-    }
-    std::vector<std::vector<double>> codes(table_.columns.size(), of_all);
-    for (const ColumnCode& code : mapping_.missing_in) {
-      const std::size_t column = column_index(table_, code.column);
-      if (column < codes.size()) codes[column].push_back(code.value);
-    }
+  [[nodiscard]] std::vector<std::vector<double>> codes_of_columns() const {
+    std::vector<std::vector<double>> codes;
+    for (std::size_t i = 0; i < table_.columns.size(); ++i)
+      codes.push_back(missing_codes(table_, mapping_, i));
     return codes;
   }
 
-  [[nodiscard]] bool is_missing(std::size_t column, double value) const {
-    return std::find(missing_[column].begin(), missing_[column].end(), value) != missing_[column].end();
+  /// Returns the number in a cell; NaN if the cell is empty or contains a code for a missing value.
+  [[nodiscard]] double cell_at(std::size_t column, std::size_t row) const {
+    const double value = table_.columns[column].values[row];
+    return std::ranges::count(missing_[column], value) > 0 ? missing_value : value;
   }
 
   [[nodiscard]] double value_at(const RoleSource& source, std::size_t row) const {
     double sum = 0;
     for (std::size_t k = 0; k < source.columns.size(); ++k) {
-      const std::size_t column = source.columns[k];
-      const double value = table_.columns[column].values[row];
-      sum += source.conversions[k](is_missing(column, value) ? std::nan("") : value);
+      sum += source.conversions[k](cell_at(source.columns[k], row));
     }
     return sum / static_cast<double>(source.columns.size());
   }
@@ -126,7 +121,7 @@ class Converter {
       std::vector<double>& values = samples[spec.role];
       values.reserve(rows.size());
       for (const std::size_t row : rows)
-        values.push_back(spec.role == Role::time ? table_.columns[source.columns.front()].values[row]
+        values.push_back(spec.role == Role::time ? cell_at(source.columns.front(), row)
                                                  : value_at(source, row));
     }
     std::vector<double>& time = samples[Role::time];
@@ -154,15 +149,12 @@ class Converter {
   /// Corrects the overflows of a clock and adds a note about this correction.
   /// @param rows  row of the table for each time.
   void continue_clock(std::vector<double>& time, double unit_s, const std::vector<std::size_t>& rows) {
+    const std::size_t column = sources_.of_roles[static_cast<std::size_t>(Role::time)].columns.front();
+    // The reader of the text has corrected dates and times of day.
+    if (table_.columns[column].moments > 0) return;
     const auto overflow = continue_overflows(time, unit_s);
     if (!overflow) return;
-    const std::size_t row = rows[overflow->first];
-    const bool has_lines = row < table_.line.size();
-    remarks_.notes.push_back("the clock overflows at " + written(overflow->period) + ", " +
-                             std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") +
-                             ", first in " + (has_lines ? "line " : "sample ") +
-                             std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) +
-                             ", and the times after each overflow are corrected");
+    remarks_.notes.push_back(about_overflow(table_, column, *overflow, rows[overflow->first]));
   }
 
   /// A time in one of several time columns.
@@ -210,12 +202,14 @@ class Converter {
 
   bool add_entries(const std::vector<std::size_t>& rows, std::size_t clock, std::vector<Entry>& entries) {
     const TableColumn& column = table_.columns[clock];
-    const auto time_s = seconds_of(table_, mapping_, clock);
+    std::optional<Overflow> overflow;
+    const auto time_s = seconds_of(table_, mapping_, clock, &overflow);
     const std::string name = "time: '" + document::shown(column.name, 40) + "' ";
     if (!time_s || column.short_clocks > 0) {
       refuse(name + "has no unit", "--unit time=s (known units: " + unit_names(Quantity::time) + ")");
       return false;
     }
+    if (overflow) remarks_.notes.push_back(about_overflow(table_, clock, *overflow, overflow->first));
     double last = -std::numeric_limits<double>::infinity();
     double first = std::nan("");
     for (const std::size_t row : rows) {
@@ -284,15 +278,37 @@ class Converter {
     }
   }
 
-  void check_any_value(const ForeignSamples& samples) {
+  /// Refuses a role without a value. An optional role whose column has values in other rows is left out
+  /// instead.
+  void check_any_value(ForeignSamples& samples) {
     for (const RoleSpec& spec : roles) {
-      const std::vector<double>& values = samples[spec.role];
+      std::vector<double>& values = samples[spec.role];
       const bool none = !values.empty() &&
                         std::none_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-      if (none)
-        refuse(std::string(spec.word) + ": '" + document::shown(mapping_[spec.role].columns.front()) +
-               "' has no value");
+      if (!none) continue;
+      const std::string column = document::shown(mapping_[spec.role].columns.front());
+      if (is_optional(spec.role) && has_value_in_table(spec.role)) {
+        values.clear();
+        remarks_.notes.push_back("'" + column +
+                                 "' has no value in the rows that are used, so the log has no " +
+                                 std::string(spec.word));
+      } else {
+        refuse(std::string(spec.word) + ": '" + column + "' has no value");
+      }
     }
+  }
+
+  [[nodiscard]] bool is_optional(Role role) const {
+    return role == Role::temperature || role == Role::supply ||
+           (role == Role::pressure && mapping_[Role::command].given());
+  }
+
+  [[nodiscard]] bool has_value_in_table(Role role) const {
+    const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(role)];
+    for (std::size_t row = 0; row < table_.rows(); ++row) {
+      if (std::isfinite(value_at(source, row))) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] Log log_of(ForeignSamples samples) const {
@@ -306,17 +322,13 @@ class Converter {
   const Mapping& mapping_;
   document::Problems& problems_;
   RoleSources sources_;
-  std::vector<std::vector<double>> missing_ = missing_codes();
+  std::vector<std::vector<double>> missing_ = codes_of_columns();
   ImportRemarks remarks_;
   double clocks_begin_s_ = -std::numeric_limits<double>::infinity();
   double clocks_end_s_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
-
-std::optional<double> missing_number(const std::string& word) {
-  return to_number(word);
-}
 
 std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                    document::Problems& problems) {
@@ -334,6 +346,8 @@ std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& map
   for (const document::Problem& problem : refused.list())
     problems.add({table.file, {1, 1}, {}, "the result is not a valid log: " + problem.message, problem.hint});
   if (!read) return std::nullopt;
+  // The notes state the corrections of the values, so the log must contain the corrected values.
+  for (const RoleSpec& spec : roles) result->log.*spec.values = std::move((*read).*spec.values);
   result->log.notes = std::move(read->notes);
   return result;
 }

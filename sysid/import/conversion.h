@@ -25,14 +25,11 @@ struct ImportedLog {
   RowAccount account;
 };
 
-/// Returns the number that a word for a missing value represents, such as 999; nullopt if the word is not a
-/// number.
-[[nodiscard]] std::optional<double> missing_number(const std::string& word);
-
 /// Converts the table into a log by the rules of samples.h. Each row of the table is either in the log or
 /// counted in `account` with a reason. A share of lost rows above refused_share is a problem; a share above
 /// warned_share gives a warning. Columns and options without effect are reported. A log that parse_log()
-/// would refuse is a problem too. All problems are added to `problems`, and their texts name the options of
+/// would refuse is a problem too. The log contains the corrections of parse_log(), and its notes state them.
+/// All problems are added to `problems`, and their texts name the options of
 /// `softgrip import`.
 [[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -104,9 +106,23 @@ struct Packing {
   double fill = missing_value;  ///< stored value that means a missing value; NaN: no such value
 };
 
+/// Rounds a number to the floating-point type of a dataset. Other types keep the number.
+double rounded_to(hid_t type, double value) {
+  std::array<std::byte, 64> buffer{};
+  if (H5Tget_class(type) != H5T_FLOAT || H5Tget_size(type) > buffer.size()) return value;
+  double rounded = value;
+  std::memcpy(buffer.data(), &value, sizeof value);
+  if (H5Tconvert(H5T_NATIVE_DOUBLE, type, 1, buffer.data(), nullptr, H5P_DEFAULT) < 0 ||
+      H5Tconvert(type, H5T_NATIVE_DOUBLE, 1, buffer.data(), nullptr, H5P_DEFAULT) < 0)
+    return value;
+  std::memcpy(&rounded, buffer.data(), sizeof rounded);
+  return rounded;
+}
+
 /// Reads the attributes of packed values. Returns an error sentence if an attribute is not a number;
 /// otherwise returns an empty text.
-std::string read_packing(hid_t dataset, Packing& packing) {
+/// @param type  type of the stored values.
+std::string read_packing(hid_t dataset, hid_t type, Packing& packing) {
   const auto refused = [](const char* name) {
     return "its attribute " + std::string(name) + " is not a number";
   };
@@ -114,7 +130,10 @@ std::string read_packing(hid_t dataset, Packing& packing) {
     return refused("scale_factor");
   if (!read_number(dataset, "add_offset", packing.offset) || !std::isfinite(packing.offset))
     return refused("add_offset");
-  return read_number(dataset, "_FillValue", packing.fill) ? std::string() : refused("_FillValue");
+  if (!read_number(dataset, "_FillValue", packing.fill)) return refused("_FillValue");
+  // The attribute can have more digits than the stored values.
+  packing.fill = rounded_to(type, packing.fill);
+  return {};
 }
 
 /// Replaces the stored values of a dataset by the values that they mean. Returns a text that states the
@@ -156,7 +175,12 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
     const std::unique_ptr<char, herr_t (*)(void*)> member(H5Tget_member_name(type, static_cast<unsigned>(i)),
                                                           H5free_memory);
     const Handle kind(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose);
-    if (!member || !is_number(kind.get())) continue;
+    if (!member) continue;
+    if (!is_number(kind.get())) {
+      arrays.skip(name + "." + member.get(),
+                  H5Tget_class(kind.get()) == H5T_ARRAY ? "an array in each row" : "no numbers");
+      continue;
+    }
     if (!arrays.has_room(rows, 1)) {
       arrays.skip(name + "." + member.get(), too_large);
       continue;
@@ -193,7 +217,10 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   const int rank = H5Sget_simple_extent_ndims(space.get());
   if (rank < 1 || rank > 2) return arrays.skip(name, std::to_string(rank) + " dimensions");
   H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
-  if (size[0] == 0 || size[1] == 0) return arrays.skip(name, "empty");
+  // MATLAB stores the size of an empty array as the values of a dataset.
+  double is_empty = 0;
+  (void)read_number(dataset, "MATLAB_empty", is_empty);
+  if (size[0] == 0 || size[1] == 0 || is_empty != 0) return arrays.skip(name, "empty");
   if (!arrays.has_room(size[0], size[1])) return arrays.skip(name, too_large);
   if (H5Tget_size(type.get()) > most_type_bytes)
     return arrays.skip(name, "a single value has more than 1 MiB");
@@ -206,7 +233,7 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
     return arrays.skip(name,
                        matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
   Packing packing;
-  if (const std::string wrong = read_packing(dataset, packing); !wrong.empty())
+  if (const std::string wrong = read_packing(dataset, type.get(), packing); !wrong.empty())
     return arrays.skip(name, wrong);
   std::vector<double> values(size[0] * size[1]);
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)

@@ -145,32 +145,54 @@ class MatCollector {
       return cell == nullptr ? arrays_.skip(here, unread_array) : collect(*cell, here, {}, depth + 1);
     }
     const std::string here = count == 1 ? name : name + "(" + number + ")";
-    if (named_signal(variable, here, index, depth)) return;
+    const NamedSignal signal = named_signal(variable, index);
+    if (signal.data != nullptr)
+      arrays_.note("'" + document::shown(here) + "' is the column '" + document::shown(signal.name) + "'");
     char* const* fields = Mat_VarGetStructFieldnames(&variable);
     const unsigned fields_count = Mat_VarGetNumberOfFields(&variable);
     for (unsigned i = 0; i < fields_count && fields != nullptr; ++i) {
       matvar_t* field = Mat_VarGetStructFieldByName(&variable, fields[i], index);
       const std::string inside = here + "." + fields[i];
-      field == nullptr ? arrays_.skip(inside, unread_array) : collect(*field, inside, {}, depth + 1);
+      if (field == nullptr) {
+        arrays_.skip(inside, unread_array);
+      } else if (field == signal.data) {
+        collect(*field, signal.name, signal.unit, depth + 1);
+      } else if (!signal.describes(field)) {
+        collect(*field, inside, {}, depth + 1);
+      }
     }
   }
 
-  /// Adds the values of a structure that contains a signal and its name. dSPACE writes such structures with
-  /// the fields Name, Data and Unit, and Simulink with label and values. Returns false for any other
-  /// structure.
-  bool named_signal(matvar_t& variable, const std::string& here, std::size_t index, int depth) {
+  /// The fields of a structure that contains a signal and its name.
+  struct NamedSignal {
+    matvar_t* data = nullptr;  ///< values of the signal; null: the structure is no named signal
+    const matvar_t* name_field = nullptr;
+    const matvar_t* unit_field =
+        nullptr;  ///< field with the unit; null: the structure has no text with a unit
+    std::string name;
+    std::string unit;
+
+    /// Returns true if the field contains the name or the unit of the signal.
+    [[nodiscard]] bool describes(const matvar_t* field) const {
+      return field == name_field || field == unit_field;
+    }
+  };
+
+  /// Finds the signal of a structure. dSPACE writes such structures with the fields Name, Data and Unit, and
+  /// Simulink with label and values.
+  NamedSignal named_signal(matvar_t& variable, std::size_t index) {
     constexpr std::array<std::pair<const char*, const char*>, 2> kinds{
         {{"Name", "Data"}, {"label", "values"}}};
     for (const auto& [name_field, data_field] : kinds) {
       matvar_t* data = Mat_VarGetStructFieldByName(&variable, data_field, index);
-      const std::string name = text_of(file_, Mat_VarGetStructFieldByName(&variable, name_field, index));
+      matvar_t* named = Mat_VarGetStructFieldByName(&variable, name_field, index);
+      const std::string name = text_of(file_, named);
       if (data == nullptr || !is_numeric(*data) || name.empty()) continue;
-      std::string unit = text_of(file_, Mat_VarGetStructFieldByName(&variable, "Unit", index));
-      arrays_.note("'" + document::shown(here) + "' is the column '" + document::shown(name) + "'");
-      collect(*data, name, unit == "-" ? std::string() : unit, depth + 1);
-      return true;
+      matvar_t* unit_field = Mat_VarGetStructFieldByName(&variable, "Unit", index);
+      const std::string unit = text_of(file_, unit_field);
+      return {data, named, unit.empty() ? nullptr : unit_field, name, unit == "-" ? std::string() : unit};
     }
-    return false;
+    return {};
   }
 
   mat_t* file_;

@@ -299,6 +299,11 @@ std::string about_combined_times(const TableColumn& first, const TableColumn& se
          "' are combined into one time";
 }
 
+std::string about_unused_dates(const TableColumn& dates, const TableColumn& times) {
+  return "'" + document::shown(dates.name, 40) + "' does not change in the row in which '" +
+         document::shown(times.name, 40) + "' passes midnight, so the dates are not used";
+}
+
 void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::string>& notes) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto rest = rest_of_seconds(columns, i);

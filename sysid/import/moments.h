@@ -40,6 +40,9 @@ struct Moment {
 /// Returns the note that two columns are combined into one time.
 [[nodiscard]] std::string about_combined_times(const TableColumn& first, const TableColumn& second);
 
+/// Returns the note that a column of dates is not used, because its dates contradict the times of day.
+[[nodiscard]] std::string about_unused_dates(const TableColumn& dates, const TableColumn& times);
+
 /// A column of dates that belongs to a column of times of day in the same rows.
 class DateColumn {
  public:

@@ -9,9 +9,10 @@
 #include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
+#include "sysid/import/missing_codes.h"
 #include "sysid/import/motion.h"
 #include "sysid/import/role_fit.h"
-#include "sysid/logs/sensor_codes.h"
+#include "sysid/logs/finite_values.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -24,6 +25,12 @@ bool supplies(const ColumnMapping& column, const ForeignTable& table, std::size_
 bool taken(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
   return std::any_of(mapping.columns.begin(), mapping.columns.end(),
                      [&](const ColumnMapping& column) { return supplies(column, table, index); });
+}
+
+/// Returns true if the column contains a number that is not a code for a missing value, or if the table has
+/// no rows.
+bool has_value(const ForeignTable& table, const Mapping& mapping, std::size_t index) {
+  return table.rows() == 0 || finite_count(without_codes(table, mapping, index)) > 0;
 }
 
 /// Returns true if a role other than the time uses the column.
@@ -183,7 +190,8 @@ void choose_codes(const ForeignTable& table, const Mapping& given, Proposal& pro
     const TableColumn& column = table.columns[index];
     const bool is_stated = std::ranges::count(given.missing_in, index, column_of) > 0;
     if (is_stated || !taken_by_a_value(proposal.mapping, table, index)) continue;
-    for (const double code : sensor_codes(column.values)) {
+    const bool is_command = supplies(proposal.mapping[Role::command], table, index);
+    for (const double code : codes_for(column, is_command ? Role::command : Role::displacement)) {
       proposal.mapping.missing_in.push_back({word_of(table, index), code});
       proposal.warnings.push_back(cells_with(column, code) + " with " + shortest(code) +
                                   ", far from all other values, count as missing; to keep these values as "
@@ -233,12 +241,21 @@ void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice&
     return spec.role != Role::time && names_role(table.columns[i].name, Role::time) &&
            std::find(times.begin(), times.end(), i) != times.end();
   };
+  std::string empty;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const bool out = taken(proposal.mapping, table, i) || !choice.offers(table.columns[i]) || is_time(i);
     fits.push_back(out ? 0 : fitness_for(table.columns[i], spec.role));
+    if (fits.back() == 0 || has_value(table, proposal.mapping, i)) continue;
+    fits.back() = 0;
+    if (empty.empty()) empty = word_of(table, i);
   }
   const auto best = std::max_element(fits.begin(), fits.end());
-  if (best == fits.end() || *best == 0) return;
+  if (best == fits.end() || *best == 0) {
+    if (!empty.empty())
+      proposal.notes.push_back("'" + document::shown(empty, 40) +
+                               "' has no value, so it is not used as the " + std::string(spec.word));
+    return;
+  }
   auto chosen = static_cast<std::size_t>(best - fits.begin());
   if (spec.role == Role::displacement) chosen = choose_displacement(table, fits, chosen, proposal);
   ColumnMapping& column = proposal.mapping[spec.role];
@@ -258,10 +275,16 @@ std::string unread_time(const ForeignTable& table) {
   return {};
 }
 
-/// Returns a text about the first column that could have one of the roles if its name did not state a derived
-/// value. Returns "" if there is no such column.
-std::string derived_column(const ForeignTable& table, std::initializer_list<Role> of_roles) {
-  for (const TableColumn& column : table.columns) {
+/// Returns a text about the first column that could have one of the roles if it had a value, or if its name
+/// did not state a derived value. Returns "" if there is no such column.
+std::string unfit_column(const ForeignTable& table, const Mapping& mapping,
+                         std::initializer_list<Role> of_roles) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const TableColumn& column = table.columns[i];
+    const bool fits = std::any_of(of_roles.begin(), of_roles.end(),
+                                  [&](Role role) { return fitness_for(column, role) > 0; });
+    if (fits && !has_value(table, mapping, i))
+      return " ('" + document::shown(column.name, 40) + "' has no value)";
     const bool may_be = std::any_of(of_roles.begin(), of_roles.end(), [&](Role role) {
       const Quantity quantity = spec_of(role).quantity;
       const std::string unit = stated_unit(column, quantity);
@@ -282,10 +305,10 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
     proposal.missing.emplace_back("a time: --time COLUMN, or --rate-hz R" + unread_time(table));
   if (!mapping[Role::command].given() && !mapping[Role::pressure].given())
     proposal.missing.emplace_back("a pressure: --command COLUMN (commanded) or --pressure COLUMN (measured)" +
-                                  derived_column(table, {Role::command, Role::pressure}));
+                                  unfit_column(table, mapping, {Role::command, Role::pressure}));
   if (!mapping[Role::displacement].given())
     proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN" +
-                                  derived_column(table, {Role::displacement}));
+                                  unfit_column(table, mapping, {Role::displacement}));
 }
 
 /// Returns the first, the middle and the last value of a column as text. For a column of dates or times of

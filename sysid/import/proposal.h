@@ -24,7 +24,8 @@ struct Proposal {
     std::string hint;
   };
   std::vector<Question> questions;
-  /// Notes on the numbers of values that count as missing because the given mapping states their codes.
+  /// Notes on the numbers of values that count as missing because the given mapping states their codes, and
+  /// on columns that are not proposed because they have no value.
   std::vector<std::string> notes;
   /// Warnings about values that were interpreted as codes for missing values, and about the choice of the
   /// displacement among several columns.
@@ -36,11 +37,11 @@ struct Proposal {
 [[nodiscard]] std::string epoch_unit(const TableColumn& column);
 
 /// Completes the mapping `given` from the names and units of the columns. If two columns fit a role equally
-/// well, the first one is used. A displacement that does not move is used only if no other column that fits
-/// moves. Optional roles are assigned only if `optional_too` is true. A column gets at
-/// most one role. If the table has several fingers, only the columns of the mapping's channel are considered.
-/// If the time columns contain different times, each time column is assigned to its value columns. If this
-/// assignment is not clear, the proposal contains a question.
+/// well, the first one is used. A column without a value is not proposed. A displacement that does not move
+/// is used only if no other column that fits moves. Optional roles are assigned only if `optional_too` is
+/// true. A column gets at most one role. If the table has several fingers, only the columns of the mapping's
+/// channel are considered. If the time columns contain different times, each time column is assigned to its
+/// value columns. If this assignment is not clear, the proposal contains a question.
 [[nodiscard]] Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too);
 
 /// Returns the unit of a mapped column as text. The first of these sources is used: the mapping, the row of

@@ -65,6 +65,14 @@ void from_zero(std::vector<double>& time_s, std::vector<std::string>& notes) {
     notes.push_back("times are relative to the first sample, which is at " + significant(first, 12) + " s");
 }
 
+/// Makes the times relative to the first sample after earlier samples were left out.
+void begin_at_first(ForeignSamples& samples) {
+  std::vector<double>& time_s = samples[Role::time];
+  const double begin_s = time_s.front();
+  for (double& time : time_s) time = rounded(time - begin_s, finest_s);
+  samples.begin_s = rounded(samples.begin_s + begin_s, finest_s);
+}
+
 double width_of(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return values.empty() ? 0 : *high - *low;
@@ -76,13 +84,20 @@ double usual_interval_s(const std::vector<double>& time_s) {
   return median_of(std::span<double>(steps));
 }
 
-/// Returns true if two samples with the same time can be merged: no role has a value in both samples.
+/// Returns true if two samples with the same time can be merged: no role has two different values. Two
+/// samples with the same values are not merged, because they can be two measurements of a finger at rest.
 bool complete_each_other(const ForeignSamples& samples, std::size_t a, std::size_t b) {
-  return std::all_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
+  bool completes = false;
+  bool repeats = false;
+  for (const RoleSpec& spec : roles) {
     const std::vector<double>& values = samples[spec.role];
-    return spec.role == Role::time || values.empty() || !std::isfinite(values[a]) ||
-           !std::isfinite(values[b]);
-  });
+    if (spec.role == Role::time || values.empty()) continue;
+    const bool both = std::isfinite(values[a]) && std::isfinite(values[b]);
+    if (both && values[a] != values[b]) return false;
+    repeats = repeats || both;
+    completes = completes || std::isfinite(values[a]) != std::isfinite(values[b]);
+  }
+  return completes || !repeats;
 }
 
 void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
@@ -167,7 +182,8 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
                                    : std::to_string(repeated) + " of " + std::to_string(time_s.size()) +
                                          " rows have the time of the previous row: " + groups);
   keep(samples, kept);
-  if (samples[Role::time].front() != 0) from_zero(samples[Role::time], remarks.notes);
+  samples.begin_s = samples[Role::time].front();
+  if (samples.begin_s != 0) from_zero(samples[Role::time], remarks.notes);
   return std::nullopt;
 }
 
@@ -184,8 +200,7 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
     remarks.notes.push_back(counted(before, "before the first command (left out)"));
     remarks.account.leave_out(LeftOut::before_command, before);
     keep_range(samples, before, samples.size());
-    const double begin_s = samples[Role::time].front();
-    for (double& time : samples[Role::time]) time = rounded(time - begin_s, finest_s);
+    begin_at_first(samples);
   }
   std::size_t carried = 0;
   std::vector<double>& whole = samples[Role::command];
@@ -216,21 +231,22 @@ void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
   for (std::size_t k = 1; k + 1 < edges.size(); ++k) {
     if (length_s(k) > length_s(longest)) longest = k;
   }
+  // The options count from the first sample of the file.
+  const auto in_file = [&](std::size_t i) { return written(rounded(samples.begin_s + time_s[i], finest_s)); };
+  const auto segment = [&](std::size_t k) {
+    return in_file(edges[k]) + " to " + in_file(edges[k + 1] - 1) + " s";
+  };
   std::string others;
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
-    if (k == longest) continue;
-    others += (others.empty() ? "" : ", ") + significant(time_s[edges[k]], 6) + " to " +
-              significant(time_s[edges[k + 1] - 1], 6) + " s";
+    if (k != longest) others += (others.empty() ? "" : ", ") + segment(k);
   }
   remarks.notes.push_back("the command changed during " + std::to_string(edges.size() - 2) +
                           (edges.size() == 3 ? " gap" : " gaps") +
-                          ", so only the longest segment is kept: " + significant(time_s[edges[longest]], 6) +
-                          " to " + significant(time_s[edges[longest + 1] - 1], 6) +
-                          " s; to select another segment, use --from-s and --to-s: " + others);
+                          ", so only the longest segment is kept: " + segment(longest) +
+                          "; to select another segment, use --from-s and --to-s: " + others);
   remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
   keep_range(samples, edges[longest], edges[longest + 1]);
-  const double begin_s = samples[Role::time].front();
-  for (double& time : samples[Role::time]) time = rounded(time - begin_s, finest_s);
+  begin_at_first(samples);
 }
 
 }  // namespace softgrip::sysid

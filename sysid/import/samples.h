@@ -18,6 +18,8 @@ struct ForeignSamples {
   std::array<std::vector<double>, role_count>
       values;  ///< values for each role, in the units of a log; empty: the file has no column for this role
   std::vector<std::size_t> row;  ///< for each sample, the index of its row in the table
+  /// Time of the first sample, relative to the first sample of the file with a time [s].
+  double begin_s = 0;
 
   [[nodiscard]] std::vector<double>& operator[](Role role) { return values[static_cast<std::size_t>(role)]; }
   [[nodiscard]] const std::vector<double>& operator[](Role role) const {
@@ -42,9 +44,9 @@ struct ImportRemarks {
 
 /// Makes the times relative to the first sample and rounds them. The rounding step is the resolution of a
 /// double at the magnitude of the times, but at least 1e-9 s. Leaves out samples without a time and samples
-/// outside the range from `from_s` to `to_s` of the mapping. Merges samples with the same time if no role has
-/// a value in more than one of them; otherwise keeps only the first of them. A time that decreases is a
-/// problem.
+/// outside the range from `from_s` to `to_s` of the mapping. Merges samples with the same time if one of them
+/// has a value that the other does not have, and no role has two different values; otherwise keeps only the
+/// first of them. A time that decreases is a problem.
 /// @param groups  about_groups() (row_groups.h), if a column separates the rows of several runs or devices,
 /// otherwise empty. Problems and warnings about decreasing and repeated times then contain this text.
 [[nodiscard]] std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
@@ -57,7 +59,8 @@ struct ImportRemarks {
 /// @param samples  must not be empty.
 void complete_drive(ForeignSamples& samples, ImportRemarks& remarks);
 
-/// Keeps the longest segment between two gaps and reports the other segments. A gap is an interval between
+/// Keeps the longest segment between two gaps and reports the other segments. The reported times count from
+/// the first sample of the file, as the options --from-s and --to-s do. A gap is an interval between
 /// two samples that fulfils three conditions: it is longer than 0.5 s, it is longer than 20 usual intervals,
 /// and the command changes during this interval by more than 2 % of the range of all commands. The motion of
 /// the finger during a gap is unknown.

@@ -68,8 +68,9 @@ std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
   std::size_t length = 0;
   std::size_t most = 0;
   for (const auto& [candidate, count] : count_by_length) {
-    if (count < most) continue;
-    most = count;
+    const std::size_t values = count < 2 ? 0 : count * candidate;
+    if (values < most) continue;
+    most = values;
     length = candidate;
   }
   ForeignTable table;
@@ -85,7 +86,7 @@ std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
                             " values, but other arrays have " + std::to_string(length));
     }
   }
-  if (most >= 2) return table;
+  if (most > 0) return table;
   std::string said;
   for (const std::string& note : table.notes) said += (said.empty() ? "" : "; ") + note;
   problems.add(

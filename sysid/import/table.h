@@ -119,7 +119,9 @@ struct TableOptions {
 /// array.
 inline constexpr const char* too_large = "with this array, the file has more than 134217728 values";
 
-/// Collects the arrays of a file. The table contains only the arrays of one length, the most frequent length.
+/// Collects the arrays of a file. The table contains only the arrays of one length: the length whose arrays
+/// contain the most values, and at least two arrays. If two lengths have equally many values, the longer
+/// arrays are used.
 class ArrayCollector {
  public:
   explicit ArrayCollector(std::string file) : file_(std::move(file)) {}

@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "sysid/import/cell_value.h"
+#include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
 #include "sysid/import/moments.h"
+#include "sysid/import/text_clock.h"
 #include "sysid/import/text_dialect.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/csv_text.h"
@@ -44,7 +46,7 @@ class RowReader {
         options_(options),
         table_(table),
         report_(report),
-        moments_(dialect.width) {
+        clocks_(dialect.width) {
     table_.missing_cells.resize(options.missing.size());
     table_.columns.resize(dialect.width);
     for (std::size_t i = 0; i < dialect.width; ++i) {
@@ -72,7 +74,10 @@ class RowReader {
                                 cut_off_sentence(cells_.back().text));
     if (!belongs()) return table_.account.leave_out(LeftOut::other_channel);
     if (table_.line.empty()) find_time_of_day();
-    if (date_column_ < dialect_.width) read_date();
+    if (date_column_ < dialect_.width) {
+      read_date();
+      days_s_.push_back(seconds(date_.since_first()));
+    }
     for (std::size_t i = 0; i < dialect_.width; ++i) read_cell(i, line);
     table_.line.push_back(line.number);
     table_.position.push_back(position_++);
@@ -81,11 +86,7 @@ class RowReader {
   void finish() {
     for (std::size_t i = 0; i < dialect_.width; ++i)
       table_.columns[i].ambiguous_comma = commas_[i].ambiguous_cell(table_.columns[i].values);
-    if (date_column_ < dialect_.width && date_.is_readable() && table_.columns[date_column_].bad_count == 0) {
-      table_.columns[date_column_].is_part_of_time = true;
-      table_.notes.push_back(
-          about_combined_times(table_.columns[date_column_], table_.columns[time_of_day_]));
-    }
+    continue_clocks();
     if (skipped_.empty()) return;
     std::string lines;
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
@@ -110,6 +111,24 @@ class RowReader {
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
 
  private:
+  /// Corrects the times of day that begin again, and adds notes about the columns of times.
+  void continue_clocks() {
+    bool uses_dates = true;
+    for (std::size_t i = 0; i < dialect_.width; ++i) {
+      const auto overflow = clocks_[i].continue_times(table_.columns[i].values, days_s_);
+      if (!overflow) continue;
+      table_.notes.push_back(about_overflow(table_, i, *overflow, overflow->first));
+      uses_dates = uses_dates && i != time_of_day_;
+    }
+    if (date_column_ == dialect_.width || !date_.is_readable() || table_.columns[date_column_].bad_count > 0)
+      return;
+    TableColumn& dates = table_.columns[date_column_];
+    dates.is_part_of_time = true;
+    const TableColumn& times = table_.columns[time_of_day_];
+    table_.notes.push_back(uses_dates ? about_combined_times(dates, times)
+                                      : about_unused_dates(dates, times));
+  }
+
   /// Removes the empty cell after a separator at the end of each row if the line of the names has no such
   /// cell.
   void drop_extra_cell() {
@@ -232,9 +251,9 @@ class RowReader {
         if (column.moments == 0) column.first_moment = cell.moment;
         column.short_clocks += cell.short_clock ? 1 : 0;
         column.surely_minutes = column.surely_minutes || cell.surely_minutes;
-        column.values.push_back(
-            moments_[i].seconds_after_first(cell, column.moments++ == 0, date_.since_first()));
-        if (i == time_of_day_) check_date(line, moments_[i].is_new_round);
+        ++column.moments;
+        column.values.push_back(clocks_[i].add(cell, date_.since_first()));
+        if (i == time_of_day_) check_date(line, clocks_[i].is_midnight());
         return;
       case CellKind::text:
         if (options_.skip_bad_lines) column.bad_rows.push_back(column.values.size());
@@ -251,44 +270,21 @@ class RowReader {
     column.values.push_back(missing_value);
   }
 
-  /// Computes times relative to the first timestamp of a column. The times are whole nanoseconds, because
-  /// seconds since 1970 in a double would lose digits. If a time of day decreases by more than half a day,
-  /// midnight has passed, unless a date states the day. If minutes and seconds decrease by more than half an
-  /// hour, the next hour has begun.
-  struct Clock {
-    Nanoseconds first = 0;
-    Nanoseconds last = 0;
-    Nanoseconds rounds = 0;
-    Nanoseconds days = 0;       ///< time between the first date and the date of the last timestamp
-    bool is_new_round = false;  ///< true: midnight or the end of an hour is before the last timestamp
-
-    /// @param days_now  time between the first date and the date of the row.
-    double seconds_after_first(const CellValue& cell, bool is_first, Nanoseconds days_now) {
-      constexpr Nanoseconds day = 86400 * ns_per_s;
-      if (is_first) first = last = cell.moment;
-      if (is_first || cell.dated || cell.short_clock) days = days_now;
-      const Nanoseconds round = cell.short_clock ? 3600 * ns_per_s : day;
-      is_new_round = !cell.dated && days == days_now && last - cell.moment > round / 2;
-      rounds += is_new_round ? round : days_now - days;
-      days = days_now;
-      last = cell.moment;
-      return seconds(cell.moment - first + rounds);
-    }
-  };
-
   std::string_view text_;
   const TextLines& lines_;
   const Dialect& dialect_;
   const TableOptions& options_;
   ForeignTable& table_;
   LogReporter& report_;
-  std::vector<Clock> moments_;
+  std::vector<TextClock> clocks_;
   std::vector<DecimalCommas> commas_{dialect_.width};
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
   /// True: the column that identifies the finger has the same name as in a log.
   bool is_log_channel_ = false;
   DateColumn date_;
+  std::vector<double>
+      days_s_;  ///< for each row, the time between the first date and its date; empty: no dates
   std::size_t date_column_ = dialect_.width;  ///< column of dates; dialect_.width: there is no such column
   std::size_t time_of_day_ = dialect_.width;  ///< column of times of day that the dates complete
   CutOffDetector cut_off_;

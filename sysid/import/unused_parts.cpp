@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
+#include "sysid/import/missing_codes.h"
 #include "sysid/import/role_fit.h"
 
 namespace softgrip::sysid {
@@ -152,17 +153,18 @@ class UnusedParts {
       idle("--from-s or --to-s", "all samples are between these two times");
   }
 
-  /// Returns true if the column contains a number, and a role other than the time uses the column.
+  /// Returns true if a role uses the column, and the column contains the number.
   [[nodiscard]] bool supplies(std::size_t column, double number) const {
-    return supplies_values(column) && std::ranges::count(table_.columns[column].values, number) > 0;
+    return supplies_numbers(column) && std::ranges::count(table_.columns[column].values, number) > 0;
   }
 
-  /// Returns true if a role other than the time uses the column.
-  [[nodiscard]] bool supplies_values(std::size_t column) const {
-    return std::any_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
-      const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(spec.role)];
-      return spec.role != Role::time && std::ranges::count(source.columns, column) > 0;
-    });
+  /// Returns true if a role uses the column, and the column does not contain dates or times of day.
+  [[nodiscard]] bool supplies_numbers(std::size_t column) const {
+    return table_.columns[column].moments == 0 &&
+           std::any_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
+             const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(spec.role)];
+             return std::ranges::count(source.columns, column) > 0;
+           });
   }
 
   /// Names the columns in which a number of --missing occurs, and the words of --missing that do not occur.
@@ -187,11 +189,11 @@ class UnusedParts {
     }
     for (const ColumnCode& code : mapping_.missing_in) {
       const std::size_t column = column_index(table_, code.column);
-      const bool is_used = column < table_.columns.size() && supplies_values(column);
+      const bool is_used = column < table_.columns.size() && supplies_numbers(column);
       if (!is_used || !supplies(column, code.value))
         idle("--missing-in " + document::shown(code.column, 40) + "=" + shortest(code.value),
              is_used ? "no cell of this column contains this number"
-                     : "the import does not use the values of this column");
+                     : "the import does not use numbers of this column");
     }
   }
 

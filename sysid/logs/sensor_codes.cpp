@@ -60,7 +60,7 @@ std::set<double> reached_by_motion(std::span<const double> values,
 
 }  // namespace
 
-std::vector<double> sensor_codes(std::span<const double> values) {
+std::vector<double> sensor_codes(std::span<const double> values, CodeKinds kinds) {
   std::map<double, std::size_t> suspects;
   std::vector<double> sorted = finite_values(values).values;
   std::sort(sorted.begin(), sorted.end());
@@ -71,7 +71,7 @@ std::vector<double> sensor_codes(std::span<const double> values) {
   for (const double value : sorted) {
     const bool far =
         value < low - farther_outside * (high - low) || value > high + farther_outside * (high - low);
-    if (is_code_value(value) || (far && high > low)) {
+    if (is_code_value(value) || (far && high > low && kinds == CodeKinds::any)) {
       ++suspects[value];
     } else {
       others.push_back(value);

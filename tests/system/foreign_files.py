@@ -140,6 +140,15 @@ def dspace():
         "", [signal("set", "kPa", COMMAND), signal("tip", "mm", TIP)]), "Description": text_matrix("bench")}]))
 
 
+def late_signal():
+    """Returns named signals. The reading has a time of its own, which begins 0.5 s after the time of the command."""
+    def signal(name, values, **others):
+        return structures(name[:3], [{"Name": text_matrix(name)} | {
+            key: matrix("", column) for key, column in others.items()} | {"Data": matrix("", values)}])
+    return matlab_5(matrix("time_s", T), signal("set_kPa", COMMAND),
+                    signal("tip_mm", TIP, Time_s=[round(t + 0.5, 2) for t in T]))
+
+
 def trials():
     def trial(factor):
         return {"t_s": matrix("", T), "set_kPa": matrix("", scaled(COMMAND, factor)), "tip_mm": matrix("", scaled(TIP, factor))}
@@ -182,6 +191,11 @@ def matlab_73(path):
     with h5py.File(path, "w", userblock_size=512) as file:
         for name, values in (("t", T), ("p_cmd_kPa", COMMAND), ("p_kPa", PRESSURE), ("tip_mm", TIP)):
             file.create_dataset(name, data=[values]).attrs.create("MATLAB_class", b"double", dtype="S6")
+        # Empty arrays: MATLAB stores the dimensions of the array as its values.
+        for name in ("offset", "calibration", "remarks", "trigger", "limits"):
+            empty = file.create_dataset(name, data=[0, 0], dtype="u8")
+            empty.attrs.create("MATLAB_class", b"double", dtype="S6")
+            empty.attrs["MATLAB_empty"] = 1
     with open(path, "r+b") as file:
         file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + struct.pack("<H", 0x0200) + b"IM")
 
@@ -212,10 +226,23 @@ def hdf5_packed(path):
             file[name].attrs.update(attributes)
 
 
+def hdf5_single(path):
+    """Writes readings of 32 bits. Two readings have the fill value, which is stored with 64 bits."""
+    import h5py
+    import numpy
+    with h5py.File(path, "w") as file:
+        file["time"], file["pressure_set"] = T, COMMAND
+        file["tip"] = numpy.array([-99.1 if i in (50, 51) else tip for i, tip in enumerate(TIP)], "f4")
+        file["tip"].attrs["_FillValue"] = -99.1
+        for name, unit in (("time", "s"), ("pressure_set", "kPa"), ("tip", "mm")):
+            file[name].attrs["units"] = unit
+
+
 def hdf5_compound(path):
     import h5py
     import numpy
-    rows = numpy.array(list(zip(T, COMMAND, TIP)), dtype=[("time_s", "f8"), ("setpoint_kpa", "f8"), ("x_mm", "f8")])
+    rows = numpy.array([(*row, b"run", (1, 2, 3)) for row in zip(T, COMMAND, TIP)], dtype=[
+        ("time_s", "f8"), ("setpoint_kpa", "f8"), ("x_mm", "f8"), ("state", "S8"), ("xyz", "f4", (3,))])
     with h5py.File(path, "w") as file:
         file["log"] = rows
 
@@ -304,6 +331,11 @@ def ambiguous_tables():
             ["Date", "Time", *names[1:]], [[text[:10] for text in times("2024-05-31T23:59:58", "%d.%m.%Y.%f")],
                                            times("2024-05-31T23:59:58", "%H:%M:%S.%f"), COMMAND, TIP]),
              says="'Date' and 'Time' are combined into one time"),
+        *(File(f"date_{word}.csv", f"dates that change {about} midnight", table(
+            ["Date", "Time", *names[1:]], [["31.05.2024" if t < when else "01.06.2024" for t in T],
+                                           times("2024-05-31T23:59:58.500", "%H:%M:%S.%f"), COMMAND, TIP]),
+               says="'Date' does not change in the row in which 'Time' passes midnight, so the dates are not used")
+          for word, about, when in (("late", "one row after", 1.505), ("early", "one row before", 1.485))),
         File("date_changes.csv", "dates with the month first that change within the file", table(
             ["Date", "Time", *names[1:]], [[f"0{5 if t < 1.5 else 6}/01/2024" for t in T],
                                            times("2024-05-31T12:00:00", "%H:%M:%S.%f"), COMMAND, TIP]),
@@ -412,6 +444,57 @@ def damaged_matlab():
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm",
              says="'log{4}' is skipped: this array cannot be read"),
         File("cut_old.mat", "MATLAB 4, with the last half of the last variable missing", old[:-1200], refused=said + "variable 'tip_mm'"),
+    ]
+
+
+def clocks_and_cells():
+    """Returns files with clocks that begin again for different reasons, with columns that have no value, and with
+    values that look like codes or errors."""
+    names = ["time_s", "set_kpa", "tip_mm"]
+
+    def restarted(first, second, pattern):
+        return table(["Time", *names[1:]], [times(first, pattern) + times(second, pattern), COMMAND * 2, TIP * 2])
+    ms = [65000 + round(1000 * t) for t in T]
+    repeated = "".join(f"{t!r},{c!r},\n{t!r},{c!r},{y!r}\n" for t, c, y in zip(T, COMMAND, TIP))
+    rare = [60.0 if i % 100 in (20, 21, 22) else float(i // 50 % 2) for i in range(COUNT)]
+    empty = [None] * COUNT
+    wrong_pressure = [200.0 if i == 100 else value for i, value in enumerate(PRESSURE)]
+    late = [round(t + (0 if i < 80 else 2.345678), 6) for i, t in enumerate(T)]
+    late_command = [None if i < 10 else value for i, value in enumerate(COMMAND)]
+    return [
+        File("minutes_restart.csv", "minutes and seconds of two runs; the second run begins at 00:00",
+             restarted("2024-05-31T12:34:57", "2024-05-31T12:00:00", "%M:%S.%f"),
+             refused="minutes_restart.csv:302:1: the time goes back"),
+        File("clock_set_back.csv", "times of day with a clock that was set back by 17 hours",
+             restarted("2024-05-31T20:00:00", "2024-05-31T03:00:00", "%H:%M:%S.%f"),
+             refused="clock_set_back.csv:302:1: the time goes back"),
+        File("two_counters.csv", "a separate 16-bit counter of the reading, which begins 3 ms later",
+             table(["t_cmd (ms)", "set (kPa)", "t_tip (ms)", "tip (mm)"], [ms, COMMAND, [(t + 3) % 65536 for t in ms], TIP]),
+             columns={"time_s": [round(t + late_s, 3) for t in T for late_s in (0, 0.003)],
+                      "pressure_command_kpa": [value for value in COMMAND for _ in (1, 2)],
+                      "displacement_mm": [value for tip in TIP for value in (math.nan, tip)]},
+             says="the clock overflows at 65536, 1 time, first in line 56 of 't_tip (ms)'"),
+        File("code_in_time.csv", "-999 for missing times", table(names, [
+            [-999 if i in (0, 1, 2, 200) else t for i, t in enumerate(T)], COMMAND, TIP]), "--missing -999",
+             columns={key: without({0, 1, 2, 200})[key] for key in BASIC}, left_out={"no_time": 4},
+             says="--missing -999 applies to 4 cells of 'time_s'"),
+        File("repeated_command.csv", "the command of one time in two rows, one of them with the reading", ",".join(names) + "\n" + repeated,
+             joined=COUNT),
+        File("empty_columns.csv", "a measured pressure and a temperature without a value",
+             table([*names, "pressure_kpa", "temperature_C"], [T, COMMAND, TIP, empty, empty]),
+             says="'temperature_C' has no value, so it is not used as the temperature"),
+        File("rare_command.csv", "a high command in a few rows", table(names, [T, rare, TIP]),
+             columns=BASIC_OF | {"pressure_command_kpa": rare}),
+        File("first_reading.csv", "a wrong first reading", table(names, [T, COMMAND, [90.0, *TIP[1:]]]),
+             columns=BASIC_OF | {"displacement_mm": [math.nan, *TIP[1:]]}, says="the first reading was removed: the jump from 90"),
+        File("wrong_pressure.csv", "a measured pressure that is wrong in one row",
+             table([*names, "pressure_kpa"], [T, COMMAND, TIP, wrong_pressure]),
+             columns=MEASURED | {"pressure_kpa": [math.nan if i == 100 else value for i, value in enumerate(PRESSURE)]},
+             says="1 of 300 measured pressures is isolated, removed: 200 kPa at 1 s"),
+        File("gap_after_start.csv", "a gap, after rows without a command",
+             table(names, dropped([late, late_command, TIP], set(range(80, 150)))),
+             columns={key: without(set(range(150)))[key] for key in BASIC}, left_out={"before_command": 10, "hole": 70},
+             says="3.845678 to 5.335678 s; to select another segment, use --from-s and --to-s: 0.1 to 0.79 s"),
     ]
 
 
@@ -787,6 +870,13 @@ def files():
              matlab_5(packed(structure("run", {"t_ms": [1000 * t for t in T], "p_set_kPa": COMMAND,
                                                "p_meas_kPa": PRESSURE, "tip_mm": TIP}))), columns=MEASURED),
         File("dspace.mat", "MATLAB 5: structures with Name, Data and Unit (dSPACE)", dspace()),
+        File("late_signal.mat", "MATLAB 5: structures with Name and Data, one of them with a time of its own", late_signal(),
+             columns={"time_s": [i / 100 for i in range(COUNT + 50)], "pressure_command_kpa": COMMAND + 50 * COMMAND[-1:],
+                      "displacement_mm": 50 * [math.nan] + TIP}, joined=COUNT - 50),
+        File("small_arrays.mat", "MATLAB 5: vectors, and two matrices with 3 rows", matlab_5(
+            *map(matrix, ("time_s", "set_kPa", "tip_mm"), (T, COMMAND, TIP)), *(headed(
+                6, (3, 3), name, element(9, struct.pack("<9d", *range(9)))) for name in ("R1", "R2"))),
+             says="'R1(:,1)' is skipped: 3 values, but other arrays have 300"),
         File("trials.mat", "MATLAB 5: an array of structures", trials(), refused="belong to 3 fingers: '1', '2', '3'"),
         File("trials_chosen.mat", "MATLAB 5: one structure of an array", trials(), "--channel 2"),
         File("cells.mat", "MATLAB 5: a cell array", matlab_5(cells("log", [matrix("", T), matrix("", COMMAND),
@@ -798,7 +888,8 @@ def files():
         File("counted.lvm", "a LabVIEW measurement without X columns", lvm("No", 1)),
         File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
              + matlab_4("tip_mm", TIP)),
-        File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),
+        File("v73.mat", "MATLAB 7.3, with 5 empty arrays", matlab_73, "--unit time=s", columns=MEASURED,
+             says="'offset' is skipped: empty"),
         File("cut_off.mat", "MATLAB 5, with a missing end", matlab_5(matrix("time_s", T))[:-900],
              refused="it is cut off or damaged in the variable 'time_s'"),
         *damaged_matlab(),
@@ -807,7 +898,11 @@ def files():
              columns=BASIC_OF | {"displacement_mm": [math.nan if i in (50, 51) else value * 0.0005 + 5 for i, value in enumerate(PACKED)]},
              says="'tip': the stored values are multiplied by 0.0005 (scale_factor), and 5 is added (add_offset); 2 stored values of "
                   "-32767 count as missing (_FillValue)"),
-        File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
+        File("single.h5", "HDF5: readings of 32 bits with a _FillValue of 64 bits", hdf5_single, tolerance=1e-6,
+             columns=BASIC_OF | {"displacement_mm": [math.nan if i in (50, 51) else tip for i, tip in enumerate(TIP)]},
+             says="'tip': 2 stored values of -99.0999985 count as missing (_FillValue)"),
+        File("compound.h5", "HDF5: a table of compounds, with a text and an array in each row", hdf5_compound,
+             says="'log.state' is skipped: no numbers; 'log.xyz' is skipped: an array in each row"),
         File("counter_16_bit.csv", "milliseconds of a 16-bit counter",
              table(["t_ms", "set_kpa", "tip_mm"], [[(64000 + round(1000 * t)) % 65536 for t in T], COMMAND, TIP]),
              says="the clock overflows at 65536, 1 time"),
@@ -920,6 +1015,7 @@ def files():
              left_out={"other_channel": 200, "cut_off_line": 1}),
         File("changed.mcap", "a recording exported as MCAP, with a changed byte",
              exported(lambda whole: whole.replace(b'"time_s":1.5,', b'"time_s":2.5,', 1)), "--channel left", refused="a chunk does not match its checksum"),
+        *clocks_and_cells(),
         *spreadsheets(),
         *measurements(),
         *reports(),

@@ -16,12 +16,12 @@
 #include "base/version.h"
 #include "document/problem.h"
 #include "sysid/import/conversion.h"
+#include "sysid/import/missing_codes.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/role_fit.h"
 #include "sysid/import/table_readers.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/plausibility_warnings.h"
-#include "sysid/logs/sensor_codes.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/terminal.h"
@@ -93,11 +93,10 @@ std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
 /// Returns true if a column contains codes for missing readings.
 bool has_codes(const sysid::ForeignTable& table) {
   return std::any_of(table.columns.begin(), table.columns.end(), [](const sysid::TableColumn& column) {
-    const bool is_value =
-        std::any_of(sysid::roles.begin(), sysid::roles.end(), [&](const sysid::RoleSpec& spec) {
-          return spec.role != sysid::Role::time && sysid::fitness_for(column, spec.role) > 0;
-        });
-    return is_value && !sysid::sensor_codes(column.values).empty();
+    return std::any_of(sysid::roles.begin(), sysid::roles.end(), [&](const sysid::RoleSpec& spec) {
+      return spec.role != sysid::Role::time && sysid::fitness_for(column, spec.role) > 0 &&
+             !sysid::codes_for(column, spec.role).empty();
+    });
   });
 }
 

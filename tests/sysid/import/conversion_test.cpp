@@ -334,6 +334,38 @@ TEST(Propose, TheDisplacementThatMovesIsPreferred) {
   EXPECT_TRUE(ordinary.warnings.empty());
 }
 
+TEST(Propose, AColumnWithoutAValueIsNotProposed) {
+  const auto with = [](const std::string& cell) {
+    return table_of(text_of("t_s,set_kpa,tip_mm,temp_C",
+                            [&](int i, double p, double y) { return plain(i, p, y) + "," + cell; }));
+  };
+  Mapping coded;
+  coded.missing = {"-999"};
+  for (const Proposal& proposal : {propose(with(""), {}, true), propose(with("-999"), coded, true)}) {
+    EXPECT_FALSE(proposal.mapping[Role::temperature].given());
+    EXPECT_EQ(proposal.notes,
+              std::vector<std::string>{"'temp_C' has no value, so it is not used as the temperature"});
+  }
+  const Proposal proposal = propose(table_of(text_of("t_s,set_kpa,pressure_kpa,tip_mm",
+                                                     [](int i, double p, double) {
+                                                       return shortest(0.01 * i) + ",," + shortest(p) + ",";
+                                                     })),
+                                    {}, true);
+  EXPECT_FALSE(proposal.mapping[Role::command].given());
+  EXPECT_EQ(proposal.mapping[Role::pressure].columns, std::vector<std::string>{"pressure_kpa"});
+  ASSERT_EQ(proposal.missing.size(), 1U);
+  EXPECT_NE(proposal.missing[0].find("--displacement COLUMN ('tip_mm' has no value)"), std::string::npos)
+      << proposal.missing[0];
+}
+
+TEST(Propose, ARareCommandIsNoCode) {
+  const ForeignTable table = table_of(text_of("t_s,set_kpa,pressure_kpa,tip_mm", [](int i, double, double y) {
+    const std::string command = i % 20 == 7 ? "60" : std::to_string(i % 2);
+    return shortest(0.01 * i) + "," + command + "," + command + "," + shortest(y);
+  }));
+  EXPECT_EQ(propose(table, {}, true).mapping.missing_in, (std::vector<ColumnCode>{{"pressure_kpa", 60}}));
+}
+
 TEST(Propose, KeepsGivenAssignments) {
   const ForeignTable table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
   Mapping given;
@@ -382,9 +414,83 @@ TEST(Convert, CodesOfTheUserApplyToAllColumnsAndAreReported) {
   const auto result = convert(table, propose(table, mapping, true).mapping, problems);
   ASSERT_TRUE(result) << problems.format();
   EXPECT_EQ(
-      std::ranges::count(result->notes, "--missing 0 applies to 2 cells of 'p_cmd_kpa', 5 cells of 'x_mm'"),
+      std::ranges::count(result->notes,
+                         "--missing 0 applies to 1 cell of 't_s', 2 cells of 'p_cmd_kpa', 5 cells of 'x_mm'"),
       1)
       << with_commas(result->notes, [](const std::string& note) { return note; });
+}
+
+TEST(Convert, CodesForMissingValuesApplyToTheTime) {
+  const std::string text = text_of("time_s,set_kpa,tip_mm", [](int i, double p, double y) {
+    return i < 3 || i == 90 ? "-999," + shortest(p) + "," + shortest(y) : plain(i, p, y);
+  });
+  Mapping everywhere = mapping_of("time_s", "set_kpa", "tip_mm");
+  everywhere.missing = {"-999"};
+  Mapping in_time = mapping_of("time_s", "set_kpa", "tip_mm");
+  in_time.missing_in = {{"time_s", -999}};
+  for (const Mapping& mapping : {everywhere, in_time}) {
+    const ImportedLog result = log_of(text, mapping);
+    ASSERT_EQ(result.log.size(), 196U);
+    EXPECT_NEAR(result.log.time_s.back(), 1.96, 1e-9);
+    EXPECT_EQ(result.account.left_out[static_cast<std::size_t>(LeftOut::no_time)], 4U);
+    EXPECT_TRUE(result.warnings.empty()) << result.warnings.front();
+  }
+}
+
+TEST(Convert, CodesForMissingValuesApplyToEachOfTwoTimes) {
+  const std::string text = text_of("t_set_s,set_kpa,t_tip_s,tip_mm", [](int i, double p, double y) {
+    return shortest(0.01 * i) + "," + shortest(p) + "," +
+           (i == 90 ? "-999" : shortest(0.01 * i + 0.003 + 0.0001 * (i % 7))) + "," + shortest(y);
+  });
+  Mapping mapping = mapping_of("t_set_s", "set_kpa", "tip_mm");
+  mapping[Role::time].columns.emplace_back("t_tip_s");
+  mapping.missing = {"-999"};
+  const ImportedLog result = log_of(text, mapping);
+  EXPECT_EQ(result.account.left_out[static_cast<std::size_t>(LeftOut::no_time)], 1U);
+}
+
+TEST(Convert, OverflowsOfTwoTimesAreNotes) {
+  const std::string text = text_of("t_set_ms,set_kpa,t_tip_ms,tip_mm", [](int i, double p, double y) {
+    return std::to_string(65'000 + 10 * i) + "," + shortest(p) + "," +
+           std::to_string((65'003 + 10 * i) % 65'536) + "," + shortest(y);
+  });
+  Mapping mapping = mapping_of("t_set_ms", "set_kpa", "tip_mm");
+  mapping[Role::time].columns.emplace_back("t_tip_ms");
+  const ImportedLog result = log_of(text, mapping);
+  EXPECT_EQ(
+      std::ranges::count(result.notes,
+                         "the clock overflows at 65536, 1 time, first in line 56 of 't_tip_ms', and the "
+                         "times after each overflow are corrected"),
+      1)
+      << with_commas(result.notes, [](const std::string& note) { return note; });
+}
+
+TEST(Convert, LogContainsTheCorrectionsThatItsNotesState) {
+  const ImportedLog result = log_of(text_of(
+      "time_s,set_kpa,tip_mm", [](int i, double p, double y) { return plain(i, p, i == 0 ? 90 : y); }));
+  ASSERT_FALSE(result.log.notes.empty());
+  EXPECT_EQ(result.log.notes[0].text.find("the first reading was removed: the jump from 90 to "), 0U)
+      << result.log.notes[0].text;
+  EXPECT_TRUE(std::isnan(result.log.displacement_mm[0]));
+  EXPECT_TRUE(std::isfinite(result.log.displacement_mm[1]));
+}
+
+TEST(Convert, AnOptionalColumnWithoutAValueInTheUsedRowsIsLeftOut) {
+  const std::string text = text_of("time_s,set_kpa,tip_mm,temp_C", [](int i, double p, double y) {
+    return plain(i, p, y) + "," + (i < 20 ? "21" : "");
+  });
+  Mapping mapping = mapping_of("time_s", "set_kpa", "tip_mm");
+  mapping[Role::temperature].columns = {"temp_C"};
+  mapping.from_s = 0.5;
+  const ImportedLog result = log_of(text, mapping);
+  EXPECT_TRUE(result.log.temperature_c.empty());
+  EXPECT_EQ(
+      std::ranges::count(result.notes,
+                         "'temp_C' has no value in the rows that are used, so the log has no temperature"),
+      1);
+  const std::string empty =
+      text_of("time_s,set_kpa,tip_mm,temp_C", [](int i, double p, double y) { return plain(i, p, y) + ","; });
+  EXPECT_NE(refusal(empty, mapping).find("temperature: 'temp_C' has no value"), std::string::npos);
 }
 
 TEST(Convert, RateCountsSkippedLines) {

@@ -132,19 +132,40 @@ TEST(TextTable, DateAndTimeOfDayAreCombined) {
     EXPECT_EQ(table.notes, std::vector<std::string>{"'Date' and 'Time' are combined into one time"});
     EXPECT_EQ(table_of(dated({a + "10:00:00", b + "10:00:01"})).columns[1].values[1], 86401) << first;
   }
-  EXPECT_EQ(table_of(dated({"2024-05-31,23:59:59", "2024-05-31,00:00:01"})).columns[1].values[1], 2)
+  EXPECT_EQ(table_of(dated({"2024-05-31,23:59:59", "2024-05-31,00:00:01", "2024-05-31,00:00:03"}))
+                .columns[1]
+                .values[1],
+            2)
       << "the date of the start in each row";
   EXPECT_EQ(table_of("Date,x\n2024-05-31 00:00:00,1\n2024-05-31 00:00:01,2\n").columns[0].values[1], 1)
       << "no time of day in another column";
+}
+
+TEST(TextTable, DatesThatDoNotChangeAtMidnightAreNotUsed) {
+  const std::string before = "2024-05-31,", after = "2024-06-01,";
+  for (const auto& [second, third] : {std::pair(before, before), std::pair(after, after)}) {
+    const ForeignTable table =
+        table_of(dated({before + "23:59:57", second + "23:59:59", third + "00:00:01", after + "00:00:03"}));
+    EXPECT_EQ(table.columns[1].values, (std::vector<double>{0, 2, 4, 6}));
+    EXPECT_TRUE(table.columns[0].is_part_of_time);
+    EXPECT_EQ(
+        table.notes,
+        (std::vector<std::string>{
+            "the clock overflows at midnight, 1 time, first in line 4 of 'Time', and the times after each "
+            "overflow are corrected",
+            "'Date' does not change in the row in which 'Time' passes midnight, so the dates are not "
+            "used"}));
+  }
 }
 
 TEST(TextTable, ChangeOfAnUnreadableDateIsRefusedExceptAtMidnight) {
   EXPECT_NE(
       refusal(dated({"05/31/2024,10:00:00", "06/01/2024,10:00:01"})).find("t.csv:3:1: the date changes"),
       std::string::npos);
-  const ForeignTable table = table_of(dated({"05/31/2024,23:59:59", "06/01/2024,00:00:01"}));
+  const ForeignTable table =
+      table_of(dated({"05/31/2024,23:59:59", "06/01/2024,00:00:01", "06/01/2024,00:00:03"}));
   EXPECT_EQ(table.columns[1].values[1], 2);
-  EXPECT_EQ(table.columns[0].bad_count, 2U);
+  EXPECT_EQ(table.columns[0].bad_count, 3U);
   EXPECT_FALSE(table.columns[0].is_part_of_time);
 }
 

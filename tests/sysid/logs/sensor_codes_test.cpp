@@ -20,6 +20,7 @@ TEST(SensorCodes, AreKnownOrRepeatedValuesFarFromAllReadings) {
   std::vector<double> repeated = column;
   for (const std::size_t at : {3U, 50U, 120U}) repeated[at] = 777.7;
   EXPECT_EQ(sensor_codes(repeated), std::vector<double>{777.7});
+  EXPECT_EQ(sensor_codes(repeated, CodeKinds::typical), std::vector<double>{});
   std::vector<double> spike = column;
   spike[7] = 777.7;
   EXPECT_EQ(sensor_codes(spike), std::vector<double>{});
