@@ -26,7 +26,6 @@ control::RigSettings settings(const model::Model& model, double rate_hz) {
   channel.pid = {0.5, 3, 0.01, 0.02, 1, control::AntiWindup::back_calculation, 0.3};
   channel.feedforward.kind = control::FeedforwardKind::full_model;
   channel.limits = {0, 60, 300, 600, -1, 35, 2};
-  channel.pressure_measured = true;
   control::RigSettings rig;
   rig.rate_hz = rate_hz;
   for (const char* name : {"left", "right"}) {

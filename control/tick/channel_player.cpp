@@ -43,7 +43,6 @@ Target with_value(Target target, double value) noexcept {
 void ChannelPlayer::reset() noexcept {
   step_ = nullptr;
   stage_ = Stage::done;
-  profile_ = squeezing_ = false;
   freeze();
   bounds_ = {};
   contact_.reset();
@@ -77,7 +76,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
     plan_origin_s_ = plan != nullptr ? time_s - plan->begin_s : 0;
     bounds_ = {};
   } else if (profile_ || squeezing_) {
-    // The profile and the gripping pressure belong to the previous step. The hold keeps the last command.
+    // The profile and the gripping pressure belong to the previous step. The hold keeps their last pressure.
     stay_at(pressure_kpa_, time_s);
   }
   profile_ = squeezing_ = stopped_by_contact_ = false;
@@ -112,7 +111,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       break;
     case StepKind::track:
       closing_ = true;
-      stage_ = begin_track(step.sine, time_s) ? Stage::profile : Stage::failed;
+      stage_ = begin_track(step.sine, time_s, seen) ? Stage::profile : Stage::failed;
       break;
     case StepKind::pressure:
       mode_ = Mode::pressure;
@@ -127,12 +126,14 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
 }
 
 /// Appends the sine of a track step to the reference. Returns false if the finger does not follow the
-/// reference, for example because an object stopped it in the previous step.
-bool ChannelPlayer::begin_track(const Sine& sine, double time_s) noexcept {
+/// reference, for example because an object stopped it in the previous step. A retry of the step then begins
+/// at the present command.
+bool ChannelPlayer::begin_track(const Sine& sine, double time_s, const ChannelOutput& seen) noexcept {
+  start_ = {Target::Quantity::pressure_kpa, seen.command_kpa};
+  if (mode_ != Mode::displacement) return false;
   displacement_.forget_before(time_s - kept_s);
   start_ = {Target::Quantity::displacement_mm, displacement_.value_at(time_s)};
   start_.speed = 2 * std::numbers::pi * sine.frequency_hz * sine.amplitude_mm;
-  if (mode_ != Mode::displacement) return false;
   displacement_.cut(time_s + traits_.preview_s);
   const bool appended = append(displacement_, time_s, [&](Reference& reference) {
     return reference.sine(sine.mean_mm, sine.amplitude_mm, sine.frequency_hz, sine.cycles);

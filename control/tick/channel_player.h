@@ -79,6 +79,7 @@ class ChannelPlayer {
   void freeze() noexcept {
     mode_ = ChannelDemand::Mode::hold;
     plan_ = nullptr;
+    profile_ = squeezing_ = false;
   }
   /// Returns the time at which the ramp or the profile of the present step ends.
   [[nodiscard]] double motion_end_s() const noexcept {
@@ -102,7 +103,7 @@ class ChannelPlayer {
     done,
   };
 
-  [[nodiscard]] bool begin_track(const Sine& sine, double time_s) noexcept;
+  [[nodiscard]] bool begin_track(const Sine& sine, double time_s, const ChannelOutput& seen) noexcept;
   double go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
   void feel(const ChannelOutput& seen, bool watched) noexcept;
   bool watch(double time_s, const ChannelOutput& seen) noexcept;

@@ -112,9 +112,11 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   const bool unsteady = settings_.unsteady_is_fault && seen.unsteady;
   const double pressure_kpa = input.readings[index].pressure_kpa;
   const bool pressure_off = pressure_due(channel, pressure_kpa, starting);
-  const bool pressure_invalid =
-      pressure_measured_[index] && bus_good() && !starting && !std::isfinite(pressure_kpa);
-  channel.pressure_invalid_cycles = pressure_invalid ? channel.pressure_invalid_cycles + 1 : 0;
+  if (!pressure_measured_[index] || starting || std::isfinite(pressure_kpa)) {
+    channel.pressure_invalid_cycles = 0;
+  } else if (bus_good()) {
+    ++channel.pressure_invalid_cycles;
+  }
   const Fault of_pressure{.code = FaultCode::pressure_not_followed, .channel = number, .value = pressure_kpa};
   const Fault of_pressure_monitor{.code = FaultCode::pressure_invalid,
                                   .channel = number,
@@ -129,7 +131,7 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   }
   if (readback_off) note_cause(of_readback);
   if (channel.pressure_cycles > 0) note_cause(of_pressure);
-  if (pressure_invalid) note_cause(of_pressure_monitor);
+  if (channel.pressure_invalid_cycles > 0) note_cause(of_pressure_monitor);
   if (unsteady) note_cause(of_jumps);
   if (of_reading.code != FaultCode::none) return of_reading;
   if (unsteady) return of_jumps;

@@ -366,14 +366,44 @@ TEST_F(ContactTest, AHoldAfterAMoveThatMetAPartLastsAsLongAsRequested) {
 }
 
 TEST_F(ContactTest, ATrackFailsIfAPartStoppedThePreviousMove) {
+  for (const std::string failing : {"", ", on_contact: fail, retries: 1, on_fail: vent"}) {
+    SCOPED_TRACE(failing);
+    const PreparedSequence sequence = steps(
+        "  - move: {displacement_mm: 14, speed_mm_per_s: 5, settle_s: 1}\n"
+        "  - track: {mean_mm: 16, amplitude_mm: 2, frequency_hz: 0.5, cycles: 2" +
+        failing + "}\n");
+    SimulatedRig rig(settings);
+    rig.stone(8);
+    ASSERT_TRUE(rig.start_until_step(sequence, 1));
+    const double met_kpa = rig.output().channels[0].command_kpa;
+    while (rig.output().state != State::idle && rig.time_s() < 60) {
+      rig.tick();
+      ASSERT_LT(rig.output().channels[0].command_kpa, met_kpa + 1) << "no attempt presses against the part";
+    }
+    EXPECT_EQ(rig.result(0), GripResult::error);
+    rig.run(1);
+    EXPECT_EQ(rig.board_kpa(0), 0);
+  }
+}
+
+TEST_F(ContactTest, AFrozenFingerKeepsItsPressureInAHold) {
   const PreparedSequence sequence = steps(
-      "  - move: {displacement_mm: 14, speed_mm_per_s: 5, settle_s: 1}\n"
-      "  - track: {mean_mm: 16, amplitude_mm: 2, frequency_hz: 0.5, cycles: 2}\n");
+      "  - pressure: {points: [{time_s: 0, pressure_kpa: 0}, {time_s: 2, pressure_kpa: 55}], on_contact: "
+      "grip, "
+      "squeeze_max_kpa: 30}\n"
+      "  - grip: {channels: [left], pressure_kpa: 30, speed_kpa_per_s: 20, settle_s: 0.5, timeout_s: 20, "
+      "on_fail: "
+      "continue, verify: {by: detection, window_s: 0.2}}\n"
+      "  - hold: {channels: [left, right], hold_s: 2, reverify_every_s: 0.2, on_fail: hold}\n");
   SimulatedRig rig(settings);
-  rig.stone(12);
-  play(rig, sequence);
-  EXPECT_EQ(rig.result(0), GripResult::error);
-  EXPECT_EQ(rig.board_kpa(0), 0);
+  rig.stone(8);
+  rig.stone_only_left = true;
+  ASSERT_TRUE(rig.start_until_step(sequence, 2));
+  const double frozen_kpa = rig.output().channels[1].command_kpa;
+  ASSERT_LT(frozen_kpa, 50) << "the contact of the left finger has stopped the right finger";
+  rig.run(1.5);
+  EXPECT_EQ(rig.output().channels[0].step, 2);
+  EXPECT_NEAR(rig.output().channels[1].command_kpa, frozen_kpa, 0.5);
 }
 
 TEST_F(ContactTest, NoPressureRisesAfterAReleaseRequestInAnyStep) {

@@ -286,6 +286,18 @@ TEST_F(SingleFault, IntermittentCommunicationDoesNotHideABurstLine) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed);
 }
 
+TEST_F(SingleFault, IntermittentCommunicationDoesNotHideAnInvalidPressureMonitor) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.run(2);
+  rig.fault[0].no_pressure = true;
+  for (int i = 0; i < 3 * static_cast<int>(settings.faults.invalid_reading_cycles); ++i) {
+    rig.wire_cut = i % 3 == 0;
+    rig.tick();
+  }
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_invalid);
+}
+
 TEST_F(SingleFault, SingleInvalidPressuresDoNotHideABurstLine) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
