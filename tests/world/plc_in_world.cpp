@@ -176,6 +176,7 @@ class PlcInWorld final : public Guest {
     watch_.arrived(block.command);
     const bool waited = gateway_->handshake().has_waiting();
     static_cast<void>(gateway_->serve(wire.id, *request, now));
+    gateway_->on_requests_served(wire.id);
     gateway_->connections().find(wire.id)->partial_request = false;
     send(now, block);
     if (!waited && gateway_->handshake().has_waiting()) waiting_ = block;
@@ -191,6 +192,7 @@ class PlcInWorld final : public Guest {
     modbus::append_word(request.pdu, settings_.registers.at(plc::Name::done_counter));
     modbus::append_word(request.pdu, 3);
     const modbus::Reply reply = gateway_->serve(id, request, now);
+    gateway_->on_requests_served(id);
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return {modbus::word_at(frame, 9), static_cast<plc::Outcome>(modbus::word_at(frame, 11)),
             static_cast<plc::Reason>(modbus::word_at(frame, 13))};

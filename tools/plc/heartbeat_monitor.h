@@ -19,10 +19,8 @@ class HeartbeatMonitor {
   explicit HeartbeatMonitor(Nanoseconds silence) noexcept : silence_(silence) {}
 
   /// Notes that the heartbeat of a client has changed. Must be called at each change.
-  void on_change(const std::string& address, Nanoseconds now) {
-    check(now);  // detects a silence that this heartbeat ends, before the next call of check()
-    watched_[address] = {now, false};
-  }
+  /// check(now) must be called before, because the heartbeat may end a silence that is not detected yet.
+  void on_change(const std::string& address, Nanoseconds now) { watched_[address] = {now, false}; }
   /// Returns true once per silence of each client, at the first call after the silence has exceeded its
   /// limit. Must be called several times within this limit.
   bool check(Nanoseconds now) noexcept {
