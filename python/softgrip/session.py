@@ -23,6 +23,8 @@ OF_ANOTHER_DAEMON = -1
 FAILURES = frozenset({Result.NO_PART, Result.PART_LOST, Result.ERROR})
 # Capability that the daemon reports in its first message: starts have ids, and a stop may name the id of a start.
 START_ID = "start_id"
+# Codes with which the daemon refuses a line without processing it.
+UNREAD = ("bad_request", "too_long")
 # Code with which the daemon refuses a stop that names a start if this start does not run and will not begin.
 NOT_RUNNING = "named_start_not_running"
 
@@ -119,6 +121,7 @@ class Session:
         # Start ids by the ids of the starts that may have begun, but whose request numbers are not known.
         self._start_of: dict[int, str] = {}
         self._known_start = 0  # id of the start to which `grip` belongs
+        self._last_unanswered = 0  # id of the last start whose reply can no longer arrive
         self._stories: collections.OrderedDict[int, _Story] = collections.OrderedDict()
 
     def raise_unconfirmed(self, failure: Optional[SoftgripError]) -> None:
@@ -179,6 +182,7 @@ class Session:
             if started:
                 self.grip = OF_ANOTHER_DAEMON
                 self._stories[self.grip] = story
+        self._last_unanswered = max(self._start_of, default=0)
         self.started_at = reply.started_at
         self.last_event = reply.since
 
@@ -201,7 +205,8 @@ class Session:
 
     def _take_start(self, number: int, reply: Reply) -> None:
         """Processes the reply to a start, also if the program no longer waits for this reply. After a refusal, the
-        sequence will not begin. After any other error, the sequence may begin nevertheless."""
+        sequence will not begin. After any other error, the sequence may begin nevertheless, and its number remains
+        unknown."""
         if reply.ok:
             request = Grip.of(reply.result, "start").request
             if number > self._known_start:
@@ -209,12 +214,26 @@ class Session:
                 self.grip = request
             self.starts[self._start_of.pop(number)] = request
             self._drop_ended()
-        elif isinstance(error_of(reply.error), (Refused, SequenceRefused)):
+            return
+        error = error_of(reply.error)
+        if isinstance(error, (Refused, SequenceRefused)) or (isinstance(error, ProtocolError) and error.code in UNREAD):
             self.starts.pop(self._start_of.pop(number), None)
+        else:
+            self._last_unanswered = max(self._last_unanswered, number)
 
     def _number_is_unknown(self) -> bool:
         """Returns True if the request number of the last start is not known, so that no event can be assigned to it."""
         return max(self._start_of, default=0) > self._known_start
+
+    def _awaits_number(self) -> bool:
+        """Returns True if the reply to the last start has not arrived yet. Raises NotAnswered if the request number of the
+        last start is unknown and no reply will arrive."""
+        if not self._number_is_unknown():
+            return False
+        if max(self._start_of) <= self._last_unanswered:
+            raise NotAnswered("the daemon sent no usable reply to the last start, so its result is not known; status() shows "
+                              "whether its sequence runs")
+        return True
 
     def _drop_ended(self) -> None:
         self.starts = {start_id: request for start_id, request in self.starts.items()
@@ -250,7 +269,7 @@ class Session:
     def reached(self, wanted: frozenset[Result]) -> Optional[Result]:
         """Returns the result of the last start if this result is in `wanted`; None if the last start has no result or no
         reply yet. Raises GripFailed if the grip failed or the sequence ended."""
-        if self._number_is_unknown():
+        if self._awaits_number():
             return None
         story = self._story(self.grip)
         result = story.receive(wanted)
@@ -263,4 +282,4 @@ class Session:
     def ended(self) -> Optional[SequenceEnd]:
         """Returns the reason for which the sequence of the last start ended; None if the sequence still runs or the start
         has no reply yet."""
-        return None if self._number_is_unknown() else self._story(self.grip).end
+        return None if self._awaits_number() else self._story(self.grip).end

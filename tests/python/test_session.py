@@ -198,6 +198,11 @@ class Starts(unittest.TestCase):
         self.assertIsNone(told.reached(softgrip.Result.HOLDING))
         self.assertIsNone(told.session.ended())
 
+    def assert_unknown(self, told):
+        for ask in (lambda: told.reached(softgrip.Result.HOLDING), told.session.ended):
+            with self.assertRaises(softgrip.NotAnswered):
+                ask()
+
     def test_a_start_without_a_reply_does_not_have_the_result_of_the_previous_grip(self):
         told = Events()
         number = self.start_again(told)
@@ -212,7 +217,8 @@ class Starts(unittest.TestCase):
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.STOPPED)
 
     def test_the_result_of_the_previous_grip_counts_again_after_a_refused_start(self):
-        for code, restored in (("busy", True), ("owned", True), ("sequence_refused", True), ("no_answer", False)):
+        for code, restored in (("busy", True), ("owned", True), ("sequence_refused", True), ("bad_request", True),
+                               ("no_answer", False)):
             told = Events()
             number = self.start_again(told)
             told.session.receive(line(id=number, ok=False, error={"code": code, "message": "m", "owner": "robot", "problems": []}))
@@ -220,7 +226,19 @@ class Starts(unittest.TestCase):
                 self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
                 self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
             else:
-                self.assert_waits(told)
+                self.assert_unknown(told)
+
+    def test_the_result_of_a_start_whose_reply_was_lost_is_reported_as_unknown(self):
+        told = Events()
+        self.start_again(told)
+        self.assert_waits(told)
+        told.session.subscribed({"since": 2, "started_at": "first"})  # a new connection to the same daemon
+        self.assert_unknown(told)
+        number, _ = told.session.request("start", {"sequence": "pick"})
+        self.assert_waits(told)
+        told.session.receive(line(id=number, ok=True, result={"request": 5}))
+        told.tell("sequence_finished", "done", request=5)
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
 
     def test_a_late_reply_does_not_replace_a_later_start(self):
         told = Events()
