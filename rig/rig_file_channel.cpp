@@ -14,9 +14,13 @@ namespace {
 
 using document::Node;
 
-void check_limits(MapReader& reader, const control::LimitSettings& limits) {
-  const auto ordered = [&](std::string_view lower, double least, std::string_view upper, double most) {
-    if (reader.good(lower) && reader.good(upper) && most <= least) {
+/// Checks that each upper limit is above its lower limit. If one of the two has an error, the range is not
+/// known. In this case, sets the upper limit to the lower limit, so that no later check uses the range.
+void check_limits(MapReader& reader, control::LimitSettings& limits) {
+  const auto ordered = [&](std::string_view lower, double least, std::string_view upper, double& most) {
+    if (!reader.good(lower) || !reader.good(upper)) {
+      most = least;
+    } else if (most <= least) {
       reader.report(upper, "`" + std::string(upper) + "` must be above `" + std::string(lower) + "`");
     }
   };

@@ -92,11 +92,14 @@ void check_watchdog_time(Context& context, MapReader& top) {
   const double longest_s = seconds((timeout - watchdog_margin(context.rig.loop, timeout)).count());
   const double patience_s = context.rig.settings.faults.bus_down_cycles * context.period_s();
   if (timeout_s > 0 && patience_s >= longest_s) {
+    const double most_cycles = std::ceil(longest_s / context.period_s()) - 1;
     top.report("faults",
                "`bus_down_cycles` correspond to " + written(patience_s) +
                    " s. By this time, the board's watchdog (" + written(timeout_s) +
                    " s, minus the time of an exchange) has already vented",
-               "at most " + written(std::ceil(longest_s / context.period_s()) - 1) + " cycles");
+               most_cycles >= 1 ? "at most " + written(most_cycles) + " cycles"
+                                : "even 1 cycle is too long: set a longer time of the board's watchdog, or a "
+                                  "higher `rate_hz`");
   }
   if (timeout_s > 0 && timeout_s < 3 * context.period_s()) {
     top.warn("board",

@@ -156,6 +156,12 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
   return wiring;
 }
 
+/// Returns true if the map contains all these keys without an error. An error in `channel_defaults` is
+/// reported for the first channel only. For the next channels, this function detects the error.
+bool all_good(const MapReader& reader, const std::vector<std::string>& keys) {
+  return std::all_of(keys.begin(), keys.end(), [&](const std::string& key) { return reader.good(key); });
+}
+
 /// Checks that the pressure limits are within the ranges of the valve and of the board's output, and that
 /// they use at least 20 % of the valve's range.
 void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
@@ -261,7 +267,8 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   }
   reader.finish();
   const bool limits_known = limits.pressure_max_kpa > limits.pressure_min_kpa;
-  if (context.problems.size() == before && limits_known) {
+  const bool known = all_good(reader, {at.name, "is_kpa", "range_kpa", "on_power_loss"});
+  if (context.problems.size() == before && known && limits_known) {
     check_valve(context, reader, at, wiring, limits, facts);
     check_power_loss(reader, who, limits, rest_stated, facts);
   }
@@ -275,7 +282,9 @@ drivers::InputWiring read_sensor(Context& context, const Node& node, const std::
   drivers::InputWiring wiring = read_input(context, reader, "sensor of " + who, "is_mm", {-10'000, 10'000});
   reader.finish();
   const bool limits_known = limits.displacement_max_mm > limits.displacement_min_mm;
-  if (context.problems.size() == before && limits_known) check_sensor(reader, wiring, limits);
+  const std::string suffix(suffix_of(wiring.unit));
+  const bool known = all_good(reader, {"at" + suffix, "is_mm", "valid" + suffix});
+  if (context.problems.size() == before && known && limits_known) check_sensor(reader, wiring, limits);
   return wiring;
 }
 

@@ -181,7 +181,8 @@ void declare_safety(RigKeys& keys) {
                "fault (F1xx) occurs"),
       required(
           "invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles,
-          "number of consecutive cycles with an invalid displacement reading after which F201 to F205 occur"),
+          "number of consecutive cycles with an invalid displacement reading after which F201 to F205 occur, "
+          "or with an invalid reading of the pressure monitor after which F208 occurs"),
       required("displacement_cycles", &Fault::displacement_cycles, cycles,
                "number of consecutive cycles with a displacement outside its limits after which F206 occurs"),
       required("readback_cycles", &Fault::readback_cycles, cycles,
@@ -286,7 +287,7 @@ void declare_service(RigKeys& keys) {
                "longest period that a recording can lose after a power failure; 0: the operating system "
                "decides when it writes to the disk"),
       optional("history_s", &Recorder::history_s, {0, 60},
-               "length of the period before the start or the fault that a recording also contains")};
+               "length of the period before the fault that the recording of a fault also contains")};
   keys.look = {
       required("path", &SocketFile::path, {}, "path of the Unix domain socket, at most 107 bytes"),
       {"mode", "a text", "", "permissions of the socket's file, such as `rw-rw----` or `\"0660\"`"},

@@ -97,6 +97,8 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"free_kpa", number(channel.free_kpa)},
           {"age_s", channel.validity == model::Validity::none_yet ? Json(nullptr) : number(channel.age_s)},
           {"validity", name_of(channel.validity)},
+          {"displacement_used", settings.displacement_used},
+          {"pressure_measured", settings.pressure_measured},
           {"result", control::title_of(channel.result)},
           {"evidence", control::name_of(channel.evidence)},
           {"saturated", channel.saturated},

@@ -95,6 +95,30 @@ class Doctor(bench.BenchTest):
         report, _ = self.doctor(rig, expect=6)
         self.assertEqual(self.failures(report), ["sensor left"])
 
+    def verdicts(self, rig, names):
+        """Returns the verdicts of `softgrip doctor` without and with a running daemon."""
+        _, alone = self.doctor(rig, expect=None)
+        daemon = self.daemon(rig)
+        bench.wait_for("an answer of the daemon", lambda: daemon.status()["bus"]["connected"])
+        _, beside = self.doctor(rig, expect=None)
+        return [[findings[name]["verdict"] for name in names] for findings in (alone, beside)]
+
+    def test_an_unused_sensor_is_judged_equally_with_and_without_a_daemon(self):
+        emulator = self.emulator("--faults", self.write("faults.yaml", (
+            "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
+        emulator.ask("fault blind")
+        rig = self.rig(emulator.port, [(r"feedforward: full_model", "feedforward: none\n  displacement_used: false")])
+        alone, beside = self.verdicts(rig, ("sensor left", "pressure left"))
+        self.assertEqual(alone, ["ok", "ok"])
+        self.assertEqual(beside, alone)
+
+    def test_a_broken_pressure_monitor_is_judged_equally_with_and_without_a_daemon(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port, [(r"valid_v: \[-0\.2, 10\]", "valid_v: [8, 10]")])
+        alone, beside = self.verdicts(rig, ("sensor left", "pressure left", "pressure right"))
+        self.assertEqual(alone, ["ok", "fail", "fail"])
+        self.assertEqual(beside, alone)
+
     def test_a_daemon_without_a_board_is_reported_as_one_failure(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port)

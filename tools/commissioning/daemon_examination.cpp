@@ -1,10 +1,13 @@
 #include "tools/commissioning/examinations.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
 
 #include "base/json.h"
+#include "base/numbers.h"
 
 namespace softgrip::tools::doctor {
 namespace {
@@ -23,6 +26,17 @@ void judge_state(const Json& status, const std::string& rig, Findings& findings)
   }
 }
 
+/// Returns true if the channel uses its displacement sensor. The status of an older daemon does not contain
+/// this property.
+bool uses_displacement(const Json& channel) {
+  return json_flag(channel, "displacement_used") || json_member(channel, "displacement_used").is_null();
+}
+
+/// Returns the reading of the pressure monitor [kPa]; NaN if there is no valid reading.
+double monitored_kpa(const Json& channel) {
+  return json_number(channel, "pressure_kpa");
+}
+
 /// Returns the name of another finding that explains the latched fault; "" if no finding does, for example
 /// because the cause of the fault is no longer present.
 std::string judged_elsewhere(const Json& status, const Json& fault) {
@@ -32,8 +46,10 @@ std::string judged_elsewhere(const Json& status, const Json& fault) {
   const bool of_bus = code.starts_with("F1") || code.starts_with("F3");
   if (of_bus && channel.empty() && !json_flag(json_member(status, "bus"), "connected")) return "board";
   for (const Json& one : json_list(status, "channels")) {
-    const bool invalid = json_text(one, "validity") != "valid";
-    if (code.starts_with("F20") && invalid && json_text(one, "name") == channel) return "sensor " + channel;
+    if (json_text(one, "name") != channel) continue;
+    const bool invalid = uses_displacement(one) && json_text(one, "validity") != "valid";
+    if (code == "F208" && std::isnan(monitored_kpa(one))) return "pressure " + channel;
+    if (code != "F208" && code.starts_with("F20") && invalid) return "sensor " + channel;
   }
   return {};
 }
@@ -114,24 +130,44 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
   }
 }
 
-void judge_channel(const Json& channel, bool connected, bool has_run, Findings& findings) {
+/// Judges the pressure monitor of a channel. While a sequence runs, the pressure follows the command with a
+/// delay, so the two are compared only in the state `idle`.
+void judge_pressure(const Json& channel, bool idle, Findings& findings) {
+  if (!json_flag(channel, "pressure_measured")) return;
+  const Json& limits = json_member(channel, "limits");
+  const double kpa = monitored_kpa(channel);
+  judge_monitor(json_text(channel, "name"),
+                {.pressure_kpa = kpa,
+                 .command_kpa = json_number(channel, "command_kpa", 0),
+                 .pressure_span_kpa =
+                     json_number(limits, "pressure_max_kpa", 0) - json_number(limits, "pressure_min_kpa", 0),
+                 .at_rest = idle,
+                 .text = fixed(kpa, 2) + (idle ? " kPa at rest" : " kPa")},
+                findings);
+}
+
+/// Judges the displacement sensor of a channel. Returns true if the model of the finger can be judged.
+bool judge_sensor(const Json& channel, Findings& findings) {
   const std::string name = json_text(channel, "name");
   const std::string validity = json_text(channel, "validity");
-  if (!connected) {
-    findings.not_judged("sensor " + name, "see `board`");
-    findings.not_judged("model " + name, "see `board`");
-    return;
+  if (!uses_displacement(channel)) {
+    tell_unused_sensor(name, findings);
+    return false;
   }
-  const std::string text = fmt::format("{:.3f} mm at {:.2f} kPa", json_number(channel, "displacement_mm", 0),
-                                       json_number(channel, "command_kpa", 0));
   if (validity == "valid") {
-    findings.ok("sensor " + name, text);
-  } else {
-    findings.fail("sensor " + name, "readings are not valid: " + validity,
-                  "check the display, the wire and the window of the sensor");
-    findings.not_judged("model " + name, "see `sensor " + name + "`");
-    return;
+    findings.ok("sensor " + name,
+                fmt::format("{:.3f} mm at {:.2f} kPa", json_number(channel, "displacement_mm", 0),
+                            json_number(channel, "command_kpa", 0)));
+    return true;
   }
+  findings.fail("sensor " + name, "readings are not valid: " + validity,
+                "check the display, the wire and the window of the sensor");
+  findings.not_judged("model " + name, "see `sensor " + name + "`");
+  return false;
+}
+
+void judge_model(const Json& channel, bool has_run, Findings& findings) {
+  const std::string name = json_text(channel, "name");
   const std::string health = json_text(channel, "health");
   const std::string residual =
       fmt::format("{}, residual {:.2f} mm RMS", health, json_number(channel, "health_rms_mm", 0));
@@ -149,6 +185,19 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
     findings.ok("model " + name,
                 health == "unknown" ? "not checked yet, because no finger has moved" : residual);
   }
+}
+
+void judge_channel(const Json& channel, const Json& status, Findings& findings) {
+  const std::string name = json_text(channel, "name");
+  if (!json_flag(json_member(status, "bus"), "connected")) {
+    findings.not_judged("sensor " + name, "see `board`");
+    findings.not_judged("model " + name, "see `board`");
+    return;
+  }
+  const bool has_run = !json_member(status, "sequence").empty();
+  const bool model_known = judge_sensor(channel, findings);
+  judge_pressure(channel, json_text(status, "state") == "idle", findings);
+  if (model_known) judge_model(channel, has_run, findings);
 }
 
 void judge_rest(const Json& status, Findings& findings) {
@@ -182,10 +231,7 @@ void examine_daemon(const Json& status, const Json& statistics, const std::strin
   judge_real_time(status, findings);
   judge_loop(status, statistics, findings);
   judge_bus(status, statistics, findings);
-  const bool has_run = !json_member(status, "sequence").empty();
-  for (const Json& channel : json_list(status, "channels")) {
-    judge_channel(channel, json_flag(json_member(status, "bus"), "connected"), has_run, findings);
-  }
+  for (const Json& channel : json_list(status, "channels")) judge_channel(channel, status, findings);
   judge_rest(status, findings);
 }
 

@@ -37,6 +37,20 @@ struct MoveSettings {
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
                  bool move, const MoveSettings& settings, Findings& findings);
 
+/// Adds the finding that the displacement sensor of a channel is not used.
+void tell_unused_sensor(const std::string& channel, Findings& findings);
+
+/// A reading of the pressure monitor of a channel.
+struct MonitorReading {
+  double pressure_kpa = 0;       ///< NaN: no reading is valid
+  double command_kpa = 0;        ///< commanded pressure
+  double pressure_span_kpa = 0;  ///< difference between the pressure limits of the channel
+  bool at_rest = true;           ///< false: the command may have changed, so the pressure may differ from it
+  std::string text;              ///< description of a valid reading
+};
+/// Judges the pressure monitor of a channel.
+void judge_monitor(const std::string& channel, const MonitorReading& reading, Findings& findings);
+
 /// Examines the digital lines: requests them from the operating system, reads them and releases them. During
 /// the examination, the digital outputs are inactive.
 void examine_gpio(const rig::RigFile& rig, Findings& findings);

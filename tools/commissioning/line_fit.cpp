@@ -17,6 +17,9 @@ constexpr int bends = 200;
 /// Smallest rise of the response that counts as a rise, as a multiple of the scatter of the response about
 /// the fit.
 constexpr double least_rise = 5;
+/// Largest permitted error of a line, and largest permitted difference between repeated measurements at one
+/// position. Both are shares of the difference between the references of the two positions.
+constexpr double most_error_share = 0.1;
 
 struct Means {
   double electrical = 0;
@@ -147,7 +150,7 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
   if (low.count > 1 && high.count > 1) {
     line.repeat_spread =
         std::max(spread_at(visits, line.residuals, false), spread_at(visits, line.residuals, true));
-    if (*line.repeat_spread > span / 10) {
+    if (*line.repeat_spread > most_error_share * span) {
       return tl::unexpected(
           fmt::format("not repeatable: repeated measurements at one position differ by {:.4g} {}, but the "
                       "two positions differ only by {:.4g}",
@@ -156,6 +159,12 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
   }
   line.noise = noise * std::abs(line.slope);
   line.error = 2 * uncertainty(visits, line);
+  if (line.error > most_error_share * span) {
+    return tl::unexpected(fmt::format(
+        "too much drift or noise: the error of the line is {0:.4g} {1}, but the two positions differ only by "
+        "{2:.4g} {1}. Within an averaging time, the readings drift by up to {3:.4g} {1}: increase --settle-s",
+        line.error, unit, span, std::abs(largest(visits, &Visit::drift) * line.slope)));
+  }
   return line;
 }
 

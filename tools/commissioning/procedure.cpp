@@ -130,7 +130,7 @@ Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoin
 
 std::optional<std::string> invalid(const Sample& sample) {
   if (sample.invalid == 0 && sample.count == 0)
-    return "the board sent no reading in half of the averaging time: increase --average-s";
+    return "the board sent no valid reading in half of the averaging time: increase --average-s";
   if (sample.invalid == 0) return std::nullopt;
   return fmt::format(
       "{} of {} readings are not valid ({}): the signal is outside its valid range, or the sensor reports "
@@ -215,6 +215,10 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
   ValveVisit visit;
   const Sample& first = halves->first.pressure_kpa;
   const Sample& second = halves->second.pressure_kpa;
+  for (const Sample* half : {&first, &second}) {
+    const auto why = by_monitor ? invalid(*half) : std::nullopt;
+    if (why) return tl::unexpected(nonsense("pressure monitor: " + *why));
+  }
   if (wiring.pressure && first.count > 0 && second.count > 0) {
     visit.monitor = visit_of(first, second, wiring.pressure->scaling, upper);
     visit.monitor->reference = reference;

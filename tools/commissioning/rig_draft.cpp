@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
@@ -48,20 +49,38 @@ std::string two(double value) {
   return rounded(value, 2);
 }
 
+/// Returns the value with four decimals. The pressure limits and the range of the valve are rounded in the
+/// same way, so that a limit at the end of the range does not exceed the range.
+std::string four(double value) {
+  return rounded(value, 4);
+}
+
 std::string pair_text(double first, double second) {
-  return "[" + rounded(first, 4) + ", " + rounded(second, 4) + "]";
+  return "[" + four(first) + ", " + four(second) + "]";
 }
 
 /// Largest number of fingers in one rig file.
 constexpr std::size_t max_fingers = 16;
+
+/// Returns the text as a YAML scalar. Puts the text in single quotes if it contains a character that can have
+/// a meaning in YAML.
+std::string scalar_text(const std::string& text) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '/';
+  };
+  if (std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : std::string(1, c);
+  return quoted + "'";
+}
 
 /// Returns the path as the rig file must contain it: relative to the rig file's folder if the path is in this
 /// folder or below it, otherwise absolute.
 std::string named(const std::string& path, const std::filesystem::path& folder) {
   const auto relative = std::filesystem::proximate(path, folder);
   if (relative.empty() || relative.begin()->string() == "..")
-    return std::filesystem::absolute(path).lexically_normal().string();
-  return relative.string();
+    return scalar_text(std::filesystem::absolute(path).lexically_normal().string());
+  return scalar_text(relative.string());
 }
 
 double watchdog_s(const RigDraft& draft) {
@@ -252,8 +271,8 @@ std::string text_at(const RigDraft& draft, double rate_hz, const std::filesystem
       {"feedforward", std::string(control::name_of(feedforward))},
       {"kp", significant(0.3 / gain, 2)},
       {"ki", significant(1.5 / gain, 2)},
-      {"pressure_min", two(limits.pressure_min_kpa)},
-      {"pressure_max", two(limits.pressure_max_kpa)},
+      {"pressure_min", four(limits.pressure_min_kpa)},
+      {"pressure_max", four(limits.pressure_max_kpa)},
       {"slew_up", two(limits.slew_up_kpa_per_s)},
       {"slew_down", two(limits.slew_down_kpa_per_s)},
       {"displacement_min", rounded(limits.displacement_min_mm, 1)},

@@ -16,6 +16,9 @@ namespace softgrip::tools::doctor {
 namespace {
 
 constexpr double ms_per_s = 1e3;
+/// Largest tolerated difference between the pressure monitor and the command at rest, as a share of the
+/// difference between the pressure limits.
+constexpr double allowed_share_of_span = 0.05;
 
 std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus status) {
   if (std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board))
@@ -70,9 +73,7 @@ std::string sensor_advice(model::Validity why) {
 void judge_displacement(const control::ChannelSettings& channel, const Sample& sample, Findings& findings) {
   const std::string name = "sensor " + channel.name;
   const std::size_t all = sample.count + sample.invalid;
-  if (!channel.displacement_used) {
-    return findings.ok(name, "not used (displacement_used: false)");
-  }
+  if (!channel.displacement_used) return tell_unused_sensor(channel.name, findings);
   if (sample.invalid > 0) {
     return findings.fail(
         name,
@@ -99,7 +100,6 @@ void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelW
                 const control::FaultSettings& faults, const ChannelSample& sample, double command_kpa,
                 Findings& findings) {
   judge_displacement(channel, sample.displacement_mm, findings);
-  const double span = channel.limits.pressure_max_kpa - channel.limits.pressure_min_kpa;
   const double off = std::abs(sample.readback_kpa.mean - command_kpa);
   if (sample.readback_kpa.count > 0 && off > faults.readback_tolerance_kpa) {
     findings.fail("output " + channel.name,
@@ -108,23 +108,15 @@ void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelW
                   "possible causes: another Modbus client writes to the board, the board has a latched "
                   "watchdog trip or is in manual mode, or the scaling is wrong");
   }
-  if (sample.pressure_kpa.count == 0) {
-    if (wiring.pressure) {
-      findings.fail(
-          "pressure " + channel.name, "no reading of the pressure monitor is valid",
-          "check the wire and the supply of the monitor; compare `valid_v` or `valid_ma` with its signal");
-    }
-    return;
-  }
-  const std::string text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(sample.pressure_kpa.mean, 2),
-                                       sample.pressure_kpa.deviation);
-  if (std::abs(sample.pressure_kpa.mean - command_kpa) > 0.05 * span) {
-    findings.warn(
-        "pressure " + channel.name, text + fmt::format("; {:.2f} kPa were written", command_kpa),
-        "the monitor is wrong, or the air line does not vent: calibrate the monitor, or check the exhaust");
-  } else {
-    findings.ok("pressure " + channel.name, text);
-  }
+  if (!wiring.pressure) return;
+  const Sample& pressure = sample.pressure_kpa;
+  judge_monitor(
+      channel.name,
+      {.pressure_kpa = pressure.count > 0 ? pressure.mean : std::nan(""),
+       .command_kpa = command_kpa,
+       .pressure_span_kpa = channel.limits.pressure_max_kpa - channel.limits.pressure_min_kpa,
+       .text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(pressure.mean, 2), pressure.deviation)},
+      findings);
 }
 
 void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::string& name,
@@ -301,6 +293,26 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
                   "vent the fingers by hand, and inspect them before you reach into the gripper");
   } else if (move) {
     findings.ok("safe state", "the board confirmed that all channels are at their rest pressure");
+  }
+}
+
+void tell_unused_sensor(const std::string& channel, Findings& findings) {
+  findings.ok("sensor " + channel, "not used (displacement_used: false)");
+}
+
+void judge_monitor(const std::string& channel, const MonitorReading& reading, Findings& findings) {
+  const std::string name = "pressure " + channel;
+  const double off_kpa = std::abs(reading.pressure_kpa - reading.command_kpa);
+  if (std::isnan(reading.pressure_kpa)) {
+    findings.fail(
+        name, "no reading of the pressure monitor is valid",
+        "check the wire and the supply of the monitor; compare `valid_v` or `valid_ma` with its signal");
+  } else if (reading.at_rest && off_kpa > allowed_share_of_span * reading.pressure_span_kpa) {
+    findings.warn(
+        name, reading.text + fmt::format("; {:.2f} kPa were written", reading.command_kpa),
+        "the monitor is wrong, or the air line does not vent: calibrate the monitor, or check the exhaust");
+  } else {
+    findings.ok(name, reading.text);
   }
 }
 

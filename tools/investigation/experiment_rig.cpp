@@ -131,6 +131,11 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
                           (limits.pressure_min_kpa > 0 ? "goes down to" : "rests at") +
                           " 0 kPa, but experiments begin and end at 0 kPa");
   }
+  if (limits.pressure_max_kpa <= 0) {
+    return tl::unexpected("channel '" + result.channel_name() +
+                          "' permits no pressure above 0 kPa (pressure_max_kpa: " +
+                          written(limits.pressure_max_kpa) + "), but experiments raise the pressure");
+  }
   result.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(result.rig.board);
   return result;
 }

@@ -50,7 +50,8 @@ struct ExperimentRig {
 [[nodiscard]] std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name);
 
 /// Returns the rig with the channel of this name selected. An empty name selects the channel of a rig with
-/// one channel. A channel whose rest pressure is not 0 kPa is refused. The error is a sentence.
+/// one channel. A channel is refused if its rest pressure is not 0 kPa, or if its largest pressure is not
+/// above 0 kPa. The error is a sentence.
 [[nodiscard]] tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig,
                                                                       const std::string& channel);
 

@@ -69,6 +69,7 @@ TEST(FitLine, RefusesUnusableVisitsAndStatesTheReason) {
   EXPECT_NE(why([](auto& list) { list[1].electrical = list[3].electrical = 1.1; }).find("changes too little"),
             std::string::npos);
   EXPECT_NE(why([](auto& list) { list[2].noise = 0.2; }).find("too much noise"), std::string::npos);
+  EXPECT_NE(why([](auto& list) { list[2].drift = 0.3; }).find("too much drift"), std::string::npos);
   EXPECT_NE(why([](auto& list) { list[2].reference = 3; }).find("not repeatable"), std::string::npos);
   EXPECT_NE(why([](auto& list) { list[0].reference = NAN; }).find("not a number"), std::string::npos);
   EXPECT_NE(why([](auto& list) { list.resize(1); }).find("two different positions"), std::string::npos);
@@ -145,9 +146,17 @@ class WatchedBoard final : public testing::PassingBoard {
     highest_kpa = std::max(highest_kpa, *std::max_element(commands_kpa.begin(), commands_kpa.end()));
     const drivers::BusStatus status = PassingBoard::exchange(commands_kpa, readings, deadline);
     if (!monitored) readings[0].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+    if (at_kpa > 0 && std::abs(commands_kpa[0] - at_kpa) < 0.01) ++exchanges_at;
+    if (exchanges_at >= refused_from && exchanges_at < refused_to) return drivers::BusStatus::exception;
+    readings[0].pressure_kpa += drift_kpa * static_cast<double>(exchanges_at);
     return status;
   }
 
+  double at_kpa = 0;             ///< command at which exchanges are counted; 0: no exchanges are counted
+  std::size_t exchanges_at = 0;  ///< number of counted exchanges
+  std::size_t refused_from = 0;  ///< number of the first counted exchange that the board refuses
+  std::size_t refused_to = 0;    ///< number of the first counted exchange after refused_from that succeeds
+  double drift_kpa = 0;          ///< increase of the left pressure reading with each counted exchange [kPa]
   double highest_kpa = 0;
   bool monitored = true;  ///< false: the left pressure monitor gives no readings
 };
@@ -223,6 +232,55 @@ TEST_F(CalibrateTest, RecoversTheValveScalingByMonitorAndByManometer) {
           << "the simulated valve is ideal";
     }
     EXPECT_EQ(result->monitor.has_value(), !by_monitor);
+  }
+}
+
+/// The board refuses all exchanges during the first or the second half of the averaging time. Without a
+/// reading, the mean of this half would be 0 kPa.
+TEST_F(CalibrateTest, RefusesAPressureMonitorWithoutReadingsInHalfOfTheAveragingTime) {
+  settings_.settle_s = 1;
+  settings_.average_s = 0.2;
+  rig_.settings.faults.bus_down_cycles = 60;
+  const std::size_t settled = 200, half = 20;
+  for (const std::size_t first : {settled - 4, settled + half - 2}) {
+    SCOPED_TRACE(first);
+    time_.clock.set(1'000'000'000);
+    simulation::SimulatedBoard plants(simulated(), time_.clock);
+    WatchedBoard board(plants);
+    board.at_kpa = settings_.low_kpa;
+    board.refused_from = first;
+    board.refused_to = first + half + 8;
+    MotionSession session(rig_, board, time_.clock, time_.stop());
+    ASSERT_TRUE(session.connect());
+    KnowingOperator person([] { return ""; });
+    const auto result = calibrate_valve(rig_, session, person, settings_, true);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ExitCode::not_acceptable);
+    EXPECT_NE(result.error().text.find("no valid reading in half of the averaging time"), std::string::npos)
+        << result.error().text;
+  }
+}
+
+TEST_F(CalibrateTest, RefusesADriftingPressureMonitor) {
+  for (const double drift_kpa : {0.001, 0.009}) {
+    SCOPED_TRACE(drift_kpa);
+    time_.clock.set(1'000'000'000);
+    simulation::SimulatedBoard plants(simulated(), time_.clock);
+    WatchedBoard board(plants);
+    board.at_kpa = settings_.low_kpa;
+    board.drift_kpa = drift_kpa;
+    MotionSession session(rig_, board, time_.clock, time_.stop());
+    ASSERT_TRUE(session.connect());
+    KnowingOperator person([] { return ""; });
+    settings_.repeats = 1;
+    const auto result = calibrate_valve(rig_, session, person, settings_, true);
+    if (drift_kpa < 0.002) {
+      EXPECT_TRUE(result) << result.error().text;
+      continue;
+    }
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ExitCode::not_acceptable);
+    EXPECT_NE(result.error().text.find("valve: too much drift"), std::string::npos) << result.error().text;
   }
 }
 

@@ -445,6 +445,64 @@ TEST(ExamineDaemon, DerivesTheVerdictFromStatusAndStatistics) {
             Verdict::warn);
 }
 
+/// Returns the finding with this name that a daemon with the given channel causes; an empty finding if there
+/// is no such finding.
+Finding finding_of(const std::string& name, const nlohmann::ordered_json& channel,
+                   const std::string& state = "idle") {
+  auto status = healthy_status();
+  status["state"] = state;
+  status["channels"][0].update(channel);
+  Findings findings;
+  examine_daemon(status, healthy_statistics(), "bench", findings);
+  for (const Finding& finding : findings.list()) {
+    if (finding.name == name) return finding;
+  }
+  return {};
+}
+
+TEST(ExamineDaemon, AnUnusedSensorIsJudgedAsWithoutADaemon) {
+  const nlohmann::ordered_json unused{{"displacement_used", false}, {"validity", "out_of_range"}};
+  EXPECT_EQ(finding_of("sensor left", unused).verdict, Verdict::ok);
+  EXPECT_EQ(finding_of("sensor left", unused).text, "not used (displacement_used: false)");
+  EXPECT_EQ(finding_of("model left", unused).name, "");
+  const nlohmann::ordered_json used{{"displacement_used", true}, {"validity", "out_of_range"}};
+  EXPECT_EQ(finding_of("sensor left", used).verdict, Verdict::fail);
+}
+
+TEST(ExamineDaemon, ThePressureMonitorIsJudgedAsWithoutADaemon) {
+  const auto monitor = [](const nlohmann::ordered_json& pressure_kpa) {
+    return nlohmann::ordered_json{{"pressure_measured", true},
+                                  {"pressure_kpa", pressure_kpa},
+                                  {"command_kpa", 20},
+                                  {"limits", {{"pressure_min_kpa", 0}, {"pressure_max_kpa", 60}}}};
+  };
+  const Finding broken = finding_of("pressure left", monitor(nullptr));
+  EXPECT_EQ(broken.verdict, Verdict::fail);
+  EXPECT_EQ(broken.text, "no reading of the pressure monitor is valid");
+  EXPECT_EQ(finding_of("pressure left", monitor(nullptr), "running").verdict, Verdict::fail);
+  EXPECT_EQ(finding_of("pressure left", monitor(22)).verdict, Verdict::ok);
+  EXPECT_EQ(finding_of("pressure left", monitor(22)).text, "22.00 kPa at rest");
+  EXPECT_EQ(finding_of("pressure left", monitor(24)).verdict, Verdict::warn);
+  EXPECT_EQ(finding_of("pressure left", monitor(24), "running").verdict, Verdict::ok)
+      << "the pressure may follow the command with a delay";
+  EXPECT_EQ(finding_of("pressure left", {{"pressure_measured", false}, {"pressure_kpa", nullptr}}).name, "");
+}
+
+TEST(ExamineDaemon, AFaultOfThePressureMonitorIsOneFailure) {
+  auto status = healthy_status();
+  status["channels"][0].update({{"pressure_measured", true}, {"pressure_kpa", nullptr}});
+  status["fault"] = {{"code", "F208"},
+                     {"name", "pressure_invalid"},
+                     {"channel", "left"},
+                     {"present", {{"code", "F208"}, {"name", "pressure_invalid"}, {"channel", "left"}}}};
+  Findings findings;
+  examine_daemon(status, healthy_statistics(), "bench", findings);
+  EXPECT_EQ(findings.count(Verdict::fail), 1U);
+  const std::string text = text_of({"bench", "rig.yaml", true}, findings, 200, false);
+  EXPECT_NE(text.find("F208 pressure_invalid of left is latched, see `pressure left`"), std::string::npos)
+      << text;
+}
+
 TEST(ExamineDaemon, AnUnfitModelFailsOnlyAfterASequenceHasRun) {
   using Json = nlohmann::ordered_json;
   const auto unfit = [](Json& status, Json&) { status["channels"][0]["health"] = "unfit"; };

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "base/files.h"
 #include "rig/check.h"
 #include "rig/rig_file.h"
 #include "tools/commissioning/rig_template.h"
@@ -150,6 +151,41 @@ TEST_F(RigDraftTest, AppliesAFallingSensorCharacteristicAndAValveRange) {
   EXPECT_LT(rig.wiring[0].displacement.scaling.y_at(10), rig.wiring[0].displacement.scaling.y_at(0));
   EXPECT_EQ(rig.settings.channels[0].limits.pressure_min_kpa, 5);
   EXPECT_FALSE(rig.wiring[0].pressure);
+}
+
+/// The rig file states the limits with four decimals. A limit at the end of the valve's range must not exceed
+/// this range.
+TEST_F(RigDraftTest, AcceptsLimitsAtTheEndsOfTheRangeOfTheValve) {
+  for (const auto& [valve, most] : std::vector<std::pair<std::string, std::string>>{
+           {"0 13.7895", ""}, {"0 13.78957", ""}, {"0 68.9476", "68.9476"}, {"0.344 100", "60"}}) {
+    SCOPED_TRACE(valve);
+    auto given = with({{"board", "simulated"}, {"valve-kpa", valve}});
+    if (!most.empty()) given["pressure-max-kpa"] = most;
+    const rig::RigFile rig = read(draft_of(given));
+    ASSERT_EQ(rig.settings.channels.size(), 2U);
+    EXPECT_GE(rig.settings.channels[0].limits.pressure_min_kpa, rig.valves[0].range_min_kpa);
+    EXPECT_LE(rig.settings.channels[0].limits.pressure_max_kpa, rig.valves[0].range_max_kpa);
+  }
+}
+
+TEST_F(RigDraftTest, PutsPathsInQuotesIfYamlRequiresThem) {
+  const ScratchFolder scratch;
+  for (const std::string name : {"a, b", "a #b", "it's: {a}", "müller"}) {
+    SCOPED_TRACE(name);
+    const std::filesystem::path folder = std::filesystem::path(scratch.path()) / name;
+    std::filesystem::create_directory(folder);
+    const std::string model = (folder / "m.yaml").string(), board = (folder / "b.yaml").string();
+    std::filesystem::copy_file(config + "models/bench_twin.yaml", model);
+    std::filesystem::copy_file(map_of("adam-6024"), board);
+    RigDraft draft = draft_of({{"board", "simulated"}, {"model", model}});
+    draft.sequences_path = folder.string();
+    const rig::RigFile rig = read(draft);
+    ASSERT_EQ(rig.settings.channels.size(), 2U);
+    EXPECT_EQ(rig.socket.sequence_directory, folder.string());
+    draft = draft_of(with({{"board", map_of("adam-6024")}, {"address", "127.0.0.1"}}));
+    draft.modules[0].path = board;
+    EXPECT_EQ(read(draft).settings.channels.size(), 2U);
+  }
 }
 
 TEST(DraftFacts, ErrorStatesWhyAnAnswerIsRefused) {

@@ -75,6 +75,18 @@ TEST(ExperimentRig, EveryEndingHasAnExitCodeAndAFaultIsNamed) {
   EXPECT_EQ(refused(interrupted).code, ExitCode::failed);
 }
 
+TEST(ExperimentRig, ARigThatPermitsOnlyAVacuumIsRefused) {
+  document::Problems problems;
+  rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/vacuum/rig.yaml", problems).value();
+  EXPECT_TRUE(experiment_rig(file, "left"));
+  file.settings.channels[0].limits.pressure_max_kpa = 0;
+  const auto rig = experiment_rig(file, "left");
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error(),
+            "channel 'left' permits no pressure above 0 kPa (pressure_max_kpa: 0), but experiments raise the "
+            "pressure");
+}
+
 TEST(ExperimentRig, CommissioningReturnsTheExitCodeOfTheExperiment) {
   CommissioningOptions options;
   options.experiments = {"sharp_steps"};
