@@ -38,6 +38,13 @@ std::string file_name_of(std::string_view name) {
   return text;
 }
 
+/// Returns the space that the next version of run.json needs at most [bytes].
+std::size_t room_for(const RunStory& story) {
+  constexpr std::size_t event_bytes = 512;
+  const std::size_t sequence_bytes = story.sequence ? 2 * story.sequence->written.text.size() : 0;
+  return RunFolder::least_room + sequence_bytes + event_bytes * story.events.size();
+}
+
 }  // namespace
 
 struct Recorder::Recording {
@@ -52,6 +59,8 @@ struct Recorder::Recording {
   Nanoseconds json_at = 0;
   Nanoseconds synced_at = 0;
   std::string text;  // rows that were not yet passed to the kernel
+  std::uint64_t rows_in_text = 0;
+  Nanoseconds last_row = 0;  // time of the last row in `text`
 };
 
 Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& provenance,
@@ -187,8 +196,8 @@ std::string Recorder::folder_for(Nanoseconds at, const control::Event* event) co
 void Recorder::write(const Record& row) {
   Recording& now = *recording_;
   if (control::moves(row.state)) now.last_motion = row.at;
-  now.story.duration_s = seconds(row.at - now.begin);
-  ++now.story.rows;
+  now.last_row = row.at;
+  ++now.rows_in_text;
   rows_.append(now.text, row, now.begin);
 }
 
@@ -209,10 +218,24 @@ void Recorder::write(const StampedEvent& event) {
   now.json_due = true;
 }
 
+/// Passes the waiting rows to the kernel. run.json contains the number of the rows that were passed
+/// successfully, and the time of the last of these rows. If the disk is full, the waiting rows are lost.
+bool Recorder::append_rows() {
+  Recording& now = *recording_;
+  if (now.text.empty()) return true;
+  const bool good = now.folder.append(now.text, room_for(now.story));
+  if (good) {
+    now.story.rows += now.rows_in_text;
+    now.story.duration_s = seconds(now.last_row - now.begin);
+  }
+  now.rows_in_text = 0;
+  now.text.clear();
+  return good;
+}
+
 void Recorder::flush(bool last) {
   Recording& now = *recording_;
-  bool good = now.text.empty() || now.folder.append(now.text);
-  now.text.clear();
+  bool good = append_rows();
   const bool sync_due = settings_.sync_interval_s > 0 && !provenance_.virtual_time &&
                         (last || now_ - now.synced_at >= nanoseconds(settings_.sync_interval_s));
   if (good && sync_due) {
@@ -239,6 +262,7 @@ void Recorder::end(const char* state) {
   flush(true);
   Recording& now = *recording_;
   now.story.state = now.folder.healthy() ? state : "stopped_early";
+  now.folder.release_room();
   write_json();
   if (const std::string& error = now.folder.error(); !error.empty()) {
     block();

@@ -22,8 +22,8 @@ namespace softgrip::daemon {
 /// Status of the recorder.
 struct RecorderStatus {
   bool active = false;
-  std::string folder;  ///< folder of the present or last recording; empty before the first recording
-  std::uint64_t rows = 0;
+  std::string folder;      ///< folder of the present or last recording; empty before the first recording
+  std::uint64_t rows = 0;  ///< rows of this recording in run.csv
   std::uint64_t dropped_rows = 0;  ///< rows that were lost since the daemon's start
   std::string error;               ///< disk error of the present or last recording
 };
@@ -71,6 +71,7 @@ class Recorder {
   void begin(Nanoseconds at, const control::Event* event);
   [[nodiscard]] std::string folder_for(Nanoseconds at, const control::Event* event) const;
   void end(const char* state);
+  bool append_rows();
   void flush(bool last);
   bool write_json();
   void block();

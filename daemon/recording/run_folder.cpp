@@ -18,6 +18,8 @@ namespace softgrip::daemon {
 namespace {
 
 constexpr mode_t file_mode = 0644;
+/// Space that is reserved beyond the required space, so that few calls reserve space [bytes].
+constexpr std::int64_t more_room = 256 * 1024;
 
 std::string sentence(const std::string& what, int error) {
   return fmt::format("{}: {}", what, std::strerror(error));
@@ -42,15 +44,20 @@ std::string recorded_already(const std::string& path) {
 tl::expected<RunFolder, std::string> RunFolder::create(const std::string& path, std::string_view header,
                                                        bool durable) {
   std::error_code error;
-  std::filesystem::create_directories(path, error);
+  const bool created = std::filesystem::create_directories(path, error);
   if (error) return tl::unexpected(fmt::format("{}: {}", path, error.message()));
   const std::string file = csv_in(path);
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, file_mode);
   if (descriptor < 0 && errno == EEXIST) return tl::unexpected(there_already(file));
-  if (descriptor < 0) return tl::unexpected(sentence(file, errno));
+  if (descriptor < 0) {
+    const int reason = errno;
+    if (created) rmdir(path.c_str());
+    return tl::unexpected(sentence(file, reason));
+  }
   RunFolder folder(path, descriptor, durable);
   if (!folder.append(header)) {
     unlink(file.c_str());
+    if (created) rmdir(path.c_str());
     return tl::unexpected(folder.error());
   }
   return folder;
@@ -61,6 +68,7 @@ RunFolder::RunFolder(RunFolder&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       durable_(other.durable_),
       whole_bytes_(other.whole_bytes_),
+      reserved_bytes_(std::exchange(other.reserved_bytes_, 0)),
       error_(std::move(other.error_)),
       json_error_(std::move(other.json_error_)) {}
 
@@ -69,6 +77,7 @@ RunFolder& RunFolder::operator=(RunFolder&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(durable_, other.durable_);
   std::swap(whole_bytes_, other.whole_bytes_);
+  std::swap(reserved_bytes_, other.reserved_bytes_);
   std::swap(error_, other.error_);
   std::swap(json_error_, other.json_error_);
   return *this;
@@ -78,7 +87,29 @@ RunFolder::~RunFolder() {
   close();
 }
 
+/// Reserves the space of run.csv up to the byte `end`. Returns 0, or the errno that means that the disk is
+/// full. Other errors are ignored, because the write also works without reserved space.
+int RunFolder::reserve(std::int64_t end) noexcept {
+  if (end <= reserved_bytes_) return 0;
+  for (const std::int64_t more : {more_room, std::int64_t{0}}) {
+    if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, reserved_bytes_, end + more - reserved_bytes_) == 0) {
+      reserved_bytes_ = end + more;
+      return 0;
+    }
+    if (errno != ENOSPC && errno != EDQUOT) return 0;
+  }
+  return errno;
+}
+
+void RunFolder::release_room() noexcept {
+  // If this truncation fails, the space remains reserved. run.json may then not be replaced on a full disk.
+  if (reserved_bytes_ > 0) [[maybe_unused]]
+    const int released = ftruncate(descriptor_, whole_bytes_);
+  reserved_bytes_ = 0;
+}
+
 void RunFolder::close() noexcept {
+  release_room();
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
 }
@@ -87,9 +118,10 @@ void RunFolder::fail(const std::string& what, int error) {
   if (error_.empty()) error_ = sentence(what, error);
 }
 
-bool RunFolder::append(std::string_view lines) {
+bool RunFolder::append(std::string_view lines, std::size_t room) {
   if (descriptor_ < 0) return false;
-  const int error = write_all(descriptor_, lines);
+  int error = reserve(whole_bytes_ + static_cast<std::int64_t>(lines.size() + room));
+  if (error == 0) error = write_all(descriptor_, lines);
   if (error == 0) {
     whole_bytes_ += static_cast<std::int64_t>(lines.size());
     return true;

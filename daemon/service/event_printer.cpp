@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
 #include <sstream>
 
@@ -97,13 +98,18 @@ EventPrinter::EventPrinter(bool beside) {
   logger_->flush_on(spdlog::level::info);
 }
 
-bool EventPrinter::passes(const EventEntry& event) {
-  Flow& flow = flows_[event.kind];
-  if (event.time_s - flow.window_s > window_s) {
-    if (flow.suppressed > 0)
-      logger_->warn("{} further events of the kind {} were not printed", flow.suppressed, event.kind);
-    flow = {.window_s = event.time_s};
+void EventPrinter::report_suppressed(double at_s) {
+  for (auto& [kind, flow] : flows_) {
+    if (flow.suppressed == 0 || at_s - flow.window_s <= window_s) continue;
+    logger_->warn("{} further events of the kind {} were not printed", flow.suppressed, kind);
+    flow.suppressed = 0;
   }
+}
+
+bool EventPrinter::passes(const EventEntry& event) {
+  report_suppressed(event.time_s);
+  Flow& flow = flows_[event.kind];
+  if (event.time_s - flow.window_s > window_s) flow = {.window_s = event.time_s};
   if (flow.printed < most_per_window) {
     ++flow.printed;
     return true;
@@ -122,6 +128,7 @@ void EventPrinter::print_report(const std::string& report) {
 }
 
 void EventPrinter::print_end(const Outcome& outcome) {
+  report_suppressed(std::numeric_limits<double>::infinity());
   if (!outcome.message.empty()) logger_->error("{}", outcome.message);
   if (outcome.sequence_end) logger_->info("the sequence ended: {}", control::name_of(*outcome.sequence_end));
   for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {

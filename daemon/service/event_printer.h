@@ -18,7 +18,9 @@ class thread_pool;
 namespace softgrip::daemon {
 
 /// Prints events and reports. The loop does not use this class. If there are more than 20 events of one kind
-/// in 10 s, the events after the first 20 are counted but not printed.
+/// in 10 s, the events after the first 20 are counted but not printed. The printer reports their number
+/// before the first line that it prints more than 10 s after the first of these events, and before the report
+/// at the end.
 class EventPrinter {
  public:
   /// If `beside` is true, a thread of the printer writes the lines, so that a blocked reader cannot delay the
@@ -38,6 +40,8 @@ class EventPrinter {
     int suppressed = 0;
   };
   [[nodiscard]] bool passes(const EventEntry& event);
+  /// Reports the number of events that were not printed, for the windows that are over at the time `at_s`.
+  void report_suppressed(double at_s);
 
   std::shared_ptr<spdlog::logger> logger_;
   std::shared_ptr<spdlog::details::thread_pool> writer_;  // thread that writes the lines; it uses the logger,

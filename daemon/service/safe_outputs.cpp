@@ -21,6 +21,8 @@ namespace {
 /// Longest time of the attempt to write the safe outputs. It must be shorter than TimeoutStopSec= of the
 /// systemd unit.
 constexpr std::chrono::nanoseconds unit_patience = std::chrono::seconds(8);
+/// Longest pause between two attempts. The pause in the rig file can be longer than the complete attempt.
+constexpr std::chrono::nanoseconds longest_pause = std::chrono::milliseconds(500);
 constexpr int exchanges_that_confirm = 2;
 
 }  // namespace
@@ -54,7 +56,10 @@ SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& bo
   std::string failure;
   do {
     BusStatus status = BusStatus::ok;
-    if (!session) status = board.connect(rig.reconnect.connect_deadline);
+    if (!session) {
+      const std::chrono::nanoseconds left(give_up - clock.now());
+      status = board.connect(std::min(rig.reconnect.connect_deadline, left));
+    }
     session = status == BusStatus::ok;
     if (session) {
       status =
@@ -74,8 +79,9 @@ SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& bo
     confirmed = 0;
     session = session && status == BusStatus::exception;
     failure = fmt::format("{} ({})", drivers::name_of(status), board.detail());
-    sleep_until(clock.now() + rig.reconnect.first_pause.count());
-  } while (clock.now() < give_up);
+    const std::chrono::nanoseconds pause = std::min(rig.reconnect.first_pause, longest_pause);
+    sleep_until(std::min(clock.now() + pause.count(), give_up));
+  } while (confirmed > 0 || clock.now() < give_up);
   return {SafeOutputsEnd::board_silent,
           fmt::format("{}: not confirmed: {}. Only the board's own watchdog can vent the fingers now",
                       board.describe(), failure)};

@@ -16,6 +16,15 @@ bool ends_a_session(BusStatus status) noexcept {
          status == BusStatus::timed_out || status == BusStatus::bad_reply;
 }
 
+/// Selects the links and modules for a step of connect(): those with outputs, or those without outputs.
+enum class Outputs { some, none };
+
+/// Returns the time at which the fraction 1/`divisor` of the time until the deadline is over.
+Nanoseconds fraction_until(Nanoseconds deadline, Nanoseconds divisor) noexcept {
+  const Nanoseconds now = monotonic_now();
+  return now + (deadline - now) / divisor;
+}
+
 }  // namespace
 
 struct ModbusBoard::Parts {
@@ -67,59 +76,102 @@ struct ModbusBoard::Parts {
   }
 
   BusStatus open(Nanoseconds deadline) noexcept;
-  BusStatus probe(Nanoseconds deadline) noexcept;
+  BusStatus each_link(BusStatus (ModbusLink::*step)(Nanoseconds) noexcept, Outputs outputs,
+                      Nanoseconds deadline) noexcept;
+  BusStatus each_module(BusStatus (ModbusModule::*step)(Nanoseconds) noexcept, Outputs outputs,
+                        Nanoseconds deadline) noexcept;
+  BusStatus prepare(Outputs outputs, Nanoseconds deadline) noexcept;
+  BusStatus leave_out(ModbusModule& module, Nanoseconds deadline) noexcept;
   BusStatus encode(std::span<const double> commands_kpa) noexcept;
   BusStatus look_first(Nanoseconds deadline) noexcept;
   BusStatus transact(Nanoseconds deadline) noexcept;
   void fill(std::span<Reading> readings) const noexcept;
 };
 
-/// Opens all links, and then waits until all links have settled. Therefore, the settle times of the links
-/// overlap.
+/// Opens the links and prepares the modules for a new session. A module without outputs that does not respond
+/// must not prevent the writes to the other modules. Therefore, the modules with outputs are prepared first,
+/// and the opening of the links without outputs takes at most a quarter of the remaining time. All links are
+/// opened before the first wait for a settle time, so that the settle times of the links overlap.
 ///
 /// A link without outputs may remain closed. With a closed link, each exchange still writes the commands, and
 /// fails when it reads from the closed link.
 BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   close();
-  const auto each_link = [&](BusStatus (ModbusLink::*step)(Nanoseconds) noexcept) {
-    for (std::size_t link = 0; link < links.size(); ++link) {
-      const BusStatus status = (links[link].get()->*step)(deadline);
-      if (status == BusStatus::ok) continue;
-      say(status, links[link]->detail());
-      if (drives_outputs(link)) return status;
-    }
-    return BusStatus::ok;
-  };
-  if (const BusStatus status = each_link(&ModbusLink::open); status != BusStatus::ok) return status;
-  if (const BusStatus status = each_link(&ModbusLink::settle); status != BusStatus::ok) return status;
-  for (ModbusModule& module : modules) {
-    if (!links[module.settings().link]->is_open()) continue;
-    if (const BusStatus status = module.set_up(deadline); status != BusStatus::ok) {
-      return failed(status, module);
-    }
+  BusStatus status = each_link(&ModbusLink::open, Outputs::some, deadline);
+  if (status != BusStatus::ok) return status;
+  (void)each_link(&ModbusLink::open, Outputs::none, fraction_until(deadline, 4));
+  if (!measured) {
+    for (const auto& link : links) link->forget_measurements();
   }
-  return measured ? BusStatus::ok : probe(deadline);
+  status = each_link(&ModbusLink::settle, Outputs::some, deadline);
+  if (status == BusStatus::ok) status = prepare(Outputs::some, deadline);
+  if (status != BusStatus::ok) return status;
+  (void)each_link(&ModbusLink::settle, Outputs::none, deadline);
+  status = prepare(Outputs::none, deadline);
+  measured = true;
+  return status;
 }
 
-/// Measures the round trips only in the first session. A later session must begin with a write of the
-/// outputs. Any other request would feed the board's watchdog while the outputs have the values of the
-/// previous session.
-BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
-  for (const auto& link : links) link->forget_measurements();
-  const Nanoseconds start = monotonic_now();
-  const Nanoseconds enough = start + (deadline - start) / 4;
-  for (int i = 0; i < settings.probes; ++i) {
-    if (i > 0 && monotonic_now() > enough) break;
-    for (ModbusModule& module : modules) {
-      ModbusLink& link = *links[module.settings().link];
-      if (module.plan().reads.empty() || !link.is_open()) continue;
-      if (const BusStatus status = module.probe(deadline); status != BusStatus::ok) {
-        return failed(status, module);
-      }
-      link.keep_measurement();
-    }
+/// Opens or settles the links. Returns the status of the first link with outputs that failed.
+BusStatus ModbusBoard::Parts::each_link(BusStatus (ModbusLink::*step)(Nanoseconds) noexcept, Outputs outputs,
+                                        Nanoseconds deadline) noexcept {
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    if (drives_outputs(link) != (outputs == Outputs::some)) continue;
+    if (step == &ModbusLink::settle && !links[link]->is_open()) continue;
+    const BusStatus status = (links[link].get()->*step)(deadline);
+    if (status == BusStatus::ok) continue;
+    say(status, links[link]->detail());
+    if (outputs == Outputs::some) return status;
   }
-  measured = true;
+  return BusStatus::ok;
+}
+
+/// Sends the setup or the probe of the modules. A step of a module without outputs takes at most half of the
+/// remaining time. If the step fails, the module is left out of the session.
+BusStatus ModbusBoard::Parts::each_module(BusStatus (ModbusModule::*step)(Nanoseconds) noexcept,
+                                          Outputs outputs, Nanoseconds deadline) noexcept {
+  const bool drives = outputs == Outputs::some;
+  for (ModbusModule& module : modules) {
+    if (module.drives_outputs() != drives || !links[module.settings().link]->is_open()) continue;
+    BusStatus status = (module.*step)(drives ? deadline : fraction_until(deadline, 2));
+    if (status == BusStatus::ok) continue;
+    if (drives) return failed(status, module);
+    status = leave_out(module, deadline);
+    if (status != BusStatus::ok) return status;
+  }
+  return BusStatus::ok;
+}
+
+/// Writes the setup of the modules. In the first session, also measures the round trips. A later session must
+/// begin with a write of the outputs. Any other request would feed the board's watchdog while the outputs
+/// have the values of the previous session.
+BusStatus ModbusBoard::Parts::prepare(Outputs outputs, Nanoseconds deadline) noexcept {
+  BusStatus status = each_module(&ModbusModule::set_up, outputs, deadline);
+  if (measured) return status;
+  const Nanoseconds enough = fraction_until(deadline, 4);
+  for (int i = 0; i < settings.probes && status == BusStatus::ok; ++i) {
+    if (i > 0 && monotonic_now() > enough) break;
+    status = each_module(&ModbusModule::probe, outputs, deadline);
+  }
+  return status;
+}
+
+/// Leaves a module without outputs out of the session, after it has failed. If the link also leads to
+/// outputs, the link is opened again, and the modules with outputs on this link are set up again.
+BusStatus ModbusBoard::Parts::leave_out(ModbusModule& module, Nanoseconds deadline) noexcept {
+  module.leave_out();
+  const std::size_t at = module.settings().link;
+  ModbusLink& link = *links[at];
+  if (!drives_outputs(at)) link.close();
+  if (!drives_outputs(at) || link.is_open()) return BusStatus::ok;
+  BusStatus status = link.open(deadline);
+  if (status == BusStatus::ok) status = link.settle(deadline);
+  if (status != BusStatus::ok) return say(status, link.detail());
+  for (ModbusModule& other : modules) {
+    if (other.settings().link != at || !other.drives_outputs()) continue;
+    status = other.set_up(deadline);
+    if (status != BusStatus::ok) return failed(status, other);
+  }
   return BusStatus::ok;
 }
 

@@ -17,8 +17,8 @@ struct ModbusSettings {
   std::vector<ChannelWiring> wiring;  ///< wiring of the channels, one entry per channel; problems_of() must
                                       ///< be empty
   /// Largest number of reads per module with which connect() measures the round trips for budget(). The
-  /// measurement takes at most about a quarter of the time until the deadline of connect(). If the number is
-  /// 0, connect() measures nothing, and budget() uses an assumed round trip.
+  /// measurement takes at most about half of the time until the deadline of connect(). If the number is 0,
+  /// connect() measures nothing, and budget() uses an assumed round trip.
   int probes = 9;
 };
 
@@ -28,11 +28,13 @@ struct ModbusSettings {
 /// One exchange first writes the outputs of all modules, if possible with one write per module (function code
 /// 16 or 23). After the writes, the exchange reads the inputs and the registers for status, read-back and
 /// watchdog, with as few reads as possible. Because all writes precede the reads, a failure of a module
-/// without outputs does not prevent the writes to the other modules. The complete exchange must end within
-/// `deadline`, also if a reply arrives in parts. The time is measured with CLOCK_BOOTTIME. After a time-out,
-/// an error of the connection or an unexpected reply, all links are closed. Therefore, a late or duplicated
-/// reply cannot be taken for the response to a later request. exchange() then returns `disconnected` until
-/// connect() has opened new links.
+/// without outputs does not prevent the writes to the other modules. For the same reason, connect() succeeds
+/// if all modules with outputs respond. The first exchange then writes the commands, and fails when it reads
+/// from a module that did not respond to connect(). The complete exchange must end within `deadline`, also if
+/// a reply arrives in parts. The time is measured with CLOCK_BOOTTIME. After a time-out, an error of the
+/// connection or an unexpected reply, all links are closed. Therefore, a late or duplicated reply cannot be
+/// taken for the response to a later request. exchange() then returns `disconnected` until connect() has
+/// opened new links.
 ///
 /// A tripped watchdog is cleared only in the first exchange after connect(). This exchange writes the
 /// commands, clears the watchdog, writes the commands a second time and reads. If the watchdog trips after

@@ -154,6 +154,7 @@ BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
   unlooked_ = 0;
   confirmed_ = false;
   reads_first_ = false;
+  left_out_ = false;
   accepted_.forget();
   if (settings_.map.setup.empty()) return BusStatus::ok;
   if (clear_due_ && plan_.tripped.has_value()) {
@@ -167,12 +168,23 @@ BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
 }
 
 BusStatus ModbusModule::probe(Nanoseconds deadline) noexcept {
-  return plan_.reads.empty() ? BusStatus::ok : read_step(plan_.sampling_read, deadline);
+  if (left_out_ || plan_.reads.empty()) return BusStatus::ok;
+  const BusStatus status = read_step(plan_.sampling_read, deadline);
+  if (status == BusStatus::ok) link_.keep_measurement();
+  return status;
+}
+
+void ModbusModule::leave_out() noexcept {
+  left_out_ = true;
+  // The link can overwrite its text before the next read() of this module.
+  std::snprintf(own_detail_.data(), own_detail_.size(), "%s", detail_);
 }
 
 BusStatus ModbusModule::encode(std::span<const double> commands_kpa) noexcept {
   const TerminalBlock& outputs = settings_.map.outputs;
   const RegisterKind kind = outputs.registers.kind;
+  // The scaling of a float can exceed the range by a rounding error. Other kinds are rounded to integers.
+  const double rounding = kind == RegisterKind::float32 ? 1e-9 * (outputs.raw_max - outputs.raw_min) : 0;
   BusStatus status = BusStatus::ok;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     if (!plan_.channels[i].output_word.has_value()) continue;
@@ -180,7 +192,12 @@ BusStatus ModbusModule::encode(std::span<const double> commands_kpa) noexcept {
     double raw = outputs.scaling.x_at(electrical);
     if (kind != RegisterKind::float32) raw = std::round(raw);
     requested_raws_[i] = std::clamp(raw, outputs.raw_min, outputs.raw_max);
-    if (requested_raws_[i] != raw) {
+    const double excess = std::abs(raw - requested_raws_[i]);
+    if (kind == RegisterKind::float32) {
+      // The registers contain a float, so the read-back is compared with this float.
+      requested_raws_[i] = static_cast<double>(static_cast<float>(requested_raws_[i]));
+    }
+    if (excess > rounding) {
       status = fail(BusStatus::write_refused,
                     "channel '%s': %g kPa is outside the output's range; the limit was written", i,
                     commands_kpa[i]);
@@ -216,6 +233,7 @@ BusStatus ModbusModule::feed(FixedWrite write, Nanoseconds deadline) noexcept {
 }
 
 BusStatus ModbusModule::read(Nanoseconds deadline) noexcept {
+  if (left_out_ && link_.is_open()) return say(BusStatus::disconnected, own_detail_.data());
   for (std::size_t step = 0; step < plan_.reads.size(); ++step) {
     if (combines() && plan_.combined_read == step) continue;
     if (step == plan_.sampling_read) sampled_at_ = monotonic_now();

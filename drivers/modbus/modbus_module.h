@@ -47,6 +47,9 @@ class ModbusModule {
   /// Sends one read of the plan, to measure the duration of a round trip. If the plan has no read, returns
   /// `ok` at once.
   [[nodiscard]] BusStatus probe(Nanoseconds deadline) noexcept;
+  /// Leaves the module out of the session after set_up() or probe() has failed: until the next set_up(),
+  /// probe() does nothing, and read() returns `disconnected`. detail() keeps the reason of the failure.
+  void leave_out() noexcept;
 
   /// Encodes the commands for write(). A command outside the range of its output is limited to this range,
   /// and the function returns `write_refused`.
@@ -115,6 +118,7 @@ class ModbusModule {
   std::uint32_t unlooked_ = 0;
   bool confirmed_ = false;  ///< true: in the last exchange, the read-back confirmed the written values
   bool reads_first_ = false;
+  bool left_out_ = false;       ///< true: see leave_out()
   bool alternate_due_ = false;  ///< true: the next write of the heartbeat has the alternate value
   bool clear_due_ = false;      ///< true: the session is new, so a tripped watchdog may be cleared
   bool setup_due_ = false;      ///< true: the setup must still be written, because the watchdog had tripped

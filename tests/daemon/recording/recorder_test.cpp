@@ -1,6 +1,7 @@
 #include "daemon/recording/recorder.h"
 
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -217,8 +218,70 @@ TEST_F(RecorderTest, AFullDiskEndsTheRecordingWithAnErrorEvent) {
   const auto events = log_.since(0, 100);
   EXPECT_EQ(events.back().kind, "recording_failed");
   EXPECT_EQ(events.back().severity, Severity::error);
+  EXPECT_EQ(json(folders().front())["rows"], lines(folders().front()).size() - 1)
+      << "rows that could not be written are not counted";
+  EXPECT_EQ(json(folders().front())["duration_s"].get<double>(), std::stod(lines(folders().front()).back()));
   EXPECT_FALSE(recorder().status().active);
   EXPECT_FALSE(recorder().status().error.empty());
+}
+
+/// A small disk in memory. is_mounted() returns false if the user of the test may not mount a disk.
+class SmallDisk {
+ public:
+  SmallDisk(std::string path, const char* size) : path_(std::move(path)) {
+    std::filesystem::create_directory(path_);
+    mounted_ = ::mount("none", path_.c_str(), "tmpfs", 0, size) == 0;
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  SmallDisk(SmallDisk&&) = delete;
+  SmallDisk& operator=(SmallDisk&&) = delete;
+  ~SmallDisk() {
+    if (mounted_) ::umount(path_.c_str());
+  }
+  [[nodiscard]] bool is_mounted() const { return mounted_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  bool mounted_ = false;
+};
+
+TEST_F(RecorderTest, RunJsonDescribesTheRowsThatFitOnAFullDisk) {
+  for (const bool virtual_time : {false, true}) {
+    SCOPED_TRACE(virtual_time ? "virtual time" : "real time");
+    const SmallDisk disk(temporary_.path() + "/disk", virtual_time ? "size=400k" : "size=120k");
+    if (!disk.is_mounted()) GTEST_SKIP() << "this user may not mount a disk";
+    provenance_.virtual_time = virtual_time;
+    settings_.directory = disk.path();
+    recorder_.reset();
+    const Nanoseconds began = now_;
+    event(Event::Kind::sequence_started, {}, 7);
+    for (int i = 0; i < 70; ++i) {
+      ticks(100, State::running);
+      event(Event::Kind::fault_latched, control::FaultCode::reading_jumped);
+    }
+    recorder().finish();
+    EXPECT_GT(now_ - began, 61 * ns_per_s) << "the recorder has tried to record again";
+    std::size_t most_rows = 0;
+    nlohmann::json first;
+    for (const auto& entry : std::filesystem::directory_iterator(disk.path())) {
+      const std::string name = "disk/" + entry.path().filename().string();
+      SCOPED_TRACE(name);
+      const auto rows = lines(name);
+      ASSERT_FALSE(rows.empty()) << "an attempt on the full disk leaves no empty folder";
+      const auto story = json(name);
+      EXPECT_NE(story["state"], "recording");
+      EXPECT_EQ(story["rows"], rows.size() - 1);
+      EXPECT_EQ(story["duration_s"].get<double>(), rows.size() > 1 ? std::stod(rows.back()) : 0);
+      if (rows.size() > most_rows) first = story;
+      most_rows = std::max(most_rows, rows.size());
+    }
+    EXPECT_GT(most_rows, 500U);
+    EXPECT_LT(most_rows, 14'000U);
+    EXPECT_EQ(first["state"], "stopped_early");
+    EXPECT_NE(first["error"].dump().find("No space left"), std::string::npos);
+  }
 }
 
 /// A folder with the name of run.json makes the replacement fail, also for the user root.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <filesystem>
@@ -77,6 +78,34 @@ TEST(RunFolder, AFullDiskLeavesWholeLinesAndAPermanentError) {
   EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "header\n0,1\n");
   EXPECT_FALSE(folder->append("4,5\n"));
   EXPECT_TRUE(folder->replace_json("{}"));
+}
+
+TEST(RunFolder, AFailedCreationLeavesNoEmptyFolder) {
+  const ScratchFolder temporary;
+  {
+    const SmallDisk disk(3);
+    EXPECT_FALSE(RunFolder::create(temporary.path() + "/new", "header\n", true));
+    EXPECT_FALSE(RunFolder::create(temporary.path(), "header\n", true));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
+}
+
+TEST(RunFolder, ReservesRoomThatTheEndReleases) {
+  const ScratchFolder temporary;
+  const auto used_bytes = [&] {
+    struct stat file {};
+    EXPECT_EQ(::stat((temporary.path() + "/run.csv").c_str(), &file), 0);
+    return std::size_t{512} * static_cast<std::size_t>(file.st_blocks);
+  };
+  auto folder = RunFolder::create(temporary.path(), "header\n", true);
+  ASSERT_TRUE(folder);
+  if (used_bytes() < RunFolder::least_room) GTEST_SKIP() << "this file system cannot reserve space";
+  ASSERT_TRUE(folder->append("0,1\n", 1'000'000));
+  EXPECT_GE(used_bytes(), 1'000'000U);
+  EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "header\n0,1\n");
+  folder->release_room();
+  EXPECT_LE(used_bytes(), 65'536U);
+  EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "header\n0,1\n");
 }
 
 TEST(RunFolder, SymbolicLinksAreNeverFollowedOnWriting) {

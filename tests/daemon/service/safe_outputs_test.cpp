@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "base/periodic_schedule.h"
 #include "tests/daemon/scripted_board.h"
 
 namespace softgrip::daemon::safe_outputs_test {
@@ -15,8 +18,12 @@ class RecoveringBoard final : public drivers::Board {
  public:
   RecoveringBoard(ScriptedBoard& inner, int refused_connects, int refused_exchanges)
       : inner_(inner), refused_connects_(refused_connects), refused_exchanges_(refused_exchanges) {}
+
+  std::chrono::nanoseconds longest_deadline{0};  ///< longest deadline of connect()
+
   [[nodiscard]] std::size_t channels() const noexcept override { return inner_.channels(); }
   [[nodiscard]] BusStatus connect(std::chrono::nanoseconds deadline) noexcept override {
+    longest_deadline = std::max(longest_deadline, deadline);
     return refused_connects_-- > 0 ? BusStatus::disconnected : inner_.connect(deadline);
   }
   [[nodiscard]] BusStatus exchange(std::span<const double> commands_kpa, std::span<drivers::Reading> readings,
@@ -75,6 +82,30 @@ TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
   EXPECT_EQ(board_.written.size(), 2U);
   EXPECT_EQ(board_.connect_attempts.size(), 3U);  // one connection at the start, one after each of the 2
                                                   // exchanges without a response
+}
+
+TEST_F(SafeOutputsTest, ALongPauseOfTheRigFileDoesNotPreventTheNextAttempt) {
+  rig_.reconnect.first_pause = std::chrono::seconds(20);
+  RecoveringBoard board(board_, 1, 0);
+  const Nanoseconds start = clock_.now();
+  EXPECT_EQ(write(board).end, SafeOutputsEnd::confirmed);
+  EXPECT_LT(clock_.now() - start, 4 * ns_per_s);
+  EXPECT_EQ(board_.written.size(), 2U);
+}
+
+TEST_F(SafeOutputsTest, NoConnectionTakesLongerThanTheRemainingTime) {
+  rig_.reconnect.connect_deadline = std::chrono::seconds(30);
+  rig_.reconnect.first_pause = std::chrono::seconds(20);
+  RecoveringBoard board(board_, 1'000'000, 0);
+  const Nanoseconds start = clock_.now();
+  EXPECT_EQ(write(board, std::chrono::milliseconds(100)).end, SafeOutputsEnd::board_silent);
+  EXPECT_LT(clock_.now() - start, ns_per_s / 2);
+  EXPECT_LE(board.longest_deadline, std::chrono::milliseconds(100));
+}
+
+TEST_F(SafeOutputsTest, AWriteAtTheEndOfTheTimeIsStillConfirmed) {
+  board_.on_exchange = [] { sleep_until(MonotonicClock().now() + ns_per_s / 20); };
+  EXPECT_EQ(write(board_, std::chrono::milliseconds(20)).end, SafeOutputsEnd::confirmed);
 }
 
 TEST_F(SafeOutputsTest, ABoardWithoutResponseIsReportedAsSilent) {

@@ -141,6 +141,37 @@ TEST_F(ModbusBoardTest, OnlyWiredOutputsAreWritten) {
   }
 }
 
+/// Returns a map whose outputs are floats that the board reports exactly, without a tolerance.
+BoardMap exact_floats() {
+  BoardMap map = shipped("softgrip-sim.yaml");
+  map.has_fc23 = false;
+  map.watchdog = {};
+  map.setup.clear();
+  map.read_back->registers.address = map.outputs.registers.address;
+  map.read_back->tolerance_raw = 0;
+  map.read_back->lag_exchanges = 0;
+  return map;
+}
+
+TEST_F(ModbusBoardTest, AFloatOutputIsConfirmedWithoutATolerance) {
+  wiring_ = test::two_fingers(false);
+  connect(exact_floats());
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(exchange(33.3 + i, 0.1 * i), BusStatus::ok) << board_->detail();
+  server_.ignore_writes(true);
+  EXPECT_EQ(exchange(10, 10), BusStatus::write_refused);
+}
+
+TEST_F(ModbusBoardTest, AFloatOutputAcceptsTheFullScaleDespiteARoundingError) {
+  wiring_ = test::two_fingers(false);
+  for (const double full_kpa : {147.0, 281.0, 525.0}) {
+    for (ChannelWiring& channel : wiring_) channel.valve.scaling = {0, 0, 10, full_kpa};
+    ASSERT_GT(wiring_[0].valve.scaling.x_at(full_kpa), 10);
+    connect(exact_floats());
+    EXPECT_EQ(exchange(full_kpa, 0), BusStatus::ok) << board_->detail();
+    EXPECT_EQ(exchange(full_kpa * (1 + 1e-6), 0), BusStatus::write_refused);
+  }
+}
+
 TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
   std::swap(wiring_[0].valve.output, wiring_[1].valve.output);
   std::swap(wiring_[0].displacement.input, wiring_[1].displacement.input);
