@@ -33,6 +33,22 @@ class Extent {
   double low_ = 0, high_ = 0;
 };
 
+bool is_without_pressure(const OperatingPoint& at, const Extent& pressure) {
+  return pressure.share_from_rest(at) <= limits::rest_share;
+}
+
+/// Returns true if the mean displacement without pressure is in the upper half of the displacement range.
+bool rests_in_upper_half(const std::vector<OperatingPoint>& conditions, const Extent& pressure,
+                         const Extent& motion) {
+  double sum = 0, count = 0;
+  for (const OperatingPoint& at : conditions) {
+    if (!is_without_pressure(at, pressure)) continue;
+    sum += motion.share(at);
+    ++count;
+  }
+  return sum > 0.5 * count;
+}
+
 }  // namespace
 
 std::vector<double> rates_of(const Record& record) {
@@ -51,10 +67,11 @@ std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>
   double highest_rate = 0;
   for (const OperatingPoint& at : conditions) highest_rate = std::max(highest_rate, at.rate_kpa_per_s);
   const Extent motion(conditions, &OperatingPoint::motion);
+  const bool rests_high = rests_in_upper_half(conditions, pressure, motion);
   std::vector<bool> required;
   required.reserve(conditions.size());
   for (const OperatingPoint& at : conditions) {
-    const bool no_pressure = pressure.share_from_rest(at) <= limits::rest_share;
+    const bool no_pressure = is_without_pressure(at, pressure);
     const bool still = at.rate_kpa_per_s <= limits::rest_share * highest_rate;
     switch (appears) {
       case Appears::anywhere:
@@ -64,7 +81,7 @@ std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>
         required.push_back(no_pressure && still);
         break;
       case Appears::displaced:
-        required.push_back(motion.share(at) > 0.5);
+        required.push_back((rests_high ? 1 - motion.share(at) : motion.share(at)) > 0.5);
         break;
       case Appears::held:
         required.push_back(!no_pressure && still);

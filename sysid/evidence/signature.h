@@ -34,7 +34,8 @@ struct OperatingPoint {
 /// counts as zero if its distance to the end of the pressure range with the smaller magnitude is at most
 /// limits::rest_share of the range. For a vacuum actuator, this end is the highest pressure. A rate counts as
 /// zero if it is at most limits::rest_share of the highest rate, and as fast if it exceeds half the highest
-/// rate. A displacement counts as large in the upper half of its range.
+/// rate. A displacement counts as large in one half of its range. This is the upper half, unless the mean
+/// displacement at zero pressure is in the upper half. Then it is the lower half.
 [[nodiscard]] std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions);
 
 /// Returns true if a condition is met often enough for a decision (limits::fewest_occurrences).

@@ -10,13 +10,14 @@ namespace {
 
 constexpr double moving_share = 0.005;
 /// Distance by which the reading must be below the reading at contact, so that the finger counts as clear of
-/// the object. The distance is necessary for two reasons: a contact is reported some time after the finger
-/// has touched the object, and a released finger leaves the object at an unknown displacement.
-constexpr double away_mm = 1.0;
+/// the object. It is the larger of a share of the displacement at full pressure and a share of the reading at
+/// contact. The distance is necessary for two reasons: a contact is reported some time after the finger has
+/// touched the object, and a released finger leaves the object at an unknown displacement.
+constexpr double away_share_of_full = 0.05;
 constexpr double away_share = 0.1;
 
-double away_from(double touch_mm) {
-  return touch_mm - std::max(away_mm, away_share * touch_mm);
+double away_from(double touch_mm, double full_mm) {
+  return touch_mm - std::max(away_share_of_full * full_mm, away_share * touch_mm);
 }
 
 /// Phase of the grip of one channel between two events.
@@ -64,10 +65,10 @@ double last_reading(const sysid::Log& log, std::size_t i) {
 
 /// Marks samples before a contact as `neither`. The marked range starts after the last sample at which the
 /// finger was clear of the object.
-void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>& at) {
+void forget_approach(const sysid::Log& log, double contact_s, double full_mm, std::vector<Part>& at) {
   std::size_t i = 0;
   while (i + 1 < log.size() && log.time_s[i] < contact_s) ++i;
-  const double away = away_from(last_reading(log, i));
+  const double away = away_from(last_reading(log, i), full_mm);
   for (; i > 0 && at[i - 1] == Part::free && !(log.displacement_mm[i - 1] < away); --i)
     at[i - 1] = Part::neither;
 }
@@ -76,8 +77,8 @@ void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>&
 /// events of the channel determine the parts.
 class Walk {
  public:
-  Walk(const Recording& recording, const sysid::Log& log, double full_kpa)
-      : events_(recording.events), log_(log), full_kpa_(full_kpa) {}
+  Walk(const Recording& recording, const sysid::Log& log, double full_kpa, double full_mm)
+      : events_(recording.events), log_(log), full_kpa_(full_kpa), full_mm_(full_mm) {}
 
   /// Returns the part of the grip to which sample i belongs. Must be called for all samples in order. Samples
   /// from `unsure_s` to `holding_s` are `neither`.
@@ -106,12 +107,12 @@ class Walk {
 
  private:
   [[nodiscard]] bool is_away(double mm) const {
-    return mm < (std::isfinite(touch_mm_) ? away_from(touch_mm_) : away_mm);
+    return mm < (std::isfinite(touch_mm_) ? away_from(touch_mm_, full_mm_) : away_share_of_full * full_mm_);
   }
 
   const std::vector<RecordedEvent>& events_;
   const sysid::Log& log_;
-  double full_kpa_;
+  double full_kpa_, full_mm_;
   std::size_t event_ = 0;
   Phase phase_ = Phase::free;
   double touch_mm_ = std::numeric_limits<double>::quiet_NaN();
@@ -122,18 +123,19 @@ class Walk {
 }  // namespace
 
 GripParts parts_of(const Recording& recording, std::size_t channel, const std::vector<double>& predicted_mm,
-                   double full_kpa) {
+                   double full_kpa, double full_mm) {
   const sysid::Log& log = recording.channels[channel];
   GripParts parts;
   note_times(recording.events, log.channel, parts);
   const double never = std::numeric_limits<double>::infinity();
   const bool gripped = std::isfinite(parts.holding_s);
   const double unsure_s = gripped ? unsure_from(recording.events, log.channel, parts.holding_s) : never;
-  Walk walk(recording, log, full_kpa);
+  Walk walk(recording, log, full_kpa, full_mm);
   for (std::size_t i = 0; i < log.size(); ++i)
     parts.at.push_back(walk.next(i, predicted_mm[i], unsure_s, gripped ? parts.holding_s : never));
   for (const RecordedEvent& event : recording.events) {
-    if (event.kind == "contact" && event.channel == log.channel) forget_approach(log, event.time_s, parts.at);
+    if (event.kind == "contact" && event.channel == log.channel)
+      forget_approach(log, event.time_s, full_mm, parts.at);
   }
   return parts;
 }

@@ -70,7 +70,7 @@ Compared compare(const Recording& recording, std::size_t channel, const ScoreBas
       {},  {},
       {},  records.front().mean_interval_s()};
   c.speed_mm_per_s = speed_of(c.predicted_mm, log.time_s);
-  c.parts = parts_of(recording, channel, c.predicted_mm, base.full_kpa);
+  c.parts = parts_of(recording, channel, c.predicted_mm, base.full_kpa, base.full_mm);
   int direction = 0;
   for (const double speed : c.speed_mm_per_s) {
     if (std::abs(speed) > still_per_s * base.full_mm) direction = speed > 0 ? 1 : -1;

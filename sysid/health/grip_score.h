@@ -76,7 +76,9 @@ struct GripParts {
 /// @param predicted_mm  predicted free motion of each sample.
 /// @param full_kpa  full pressure of the finger, > 0. The finger is at rest until the command has risen by
 /// 0.5 % of `full_kpa`. During HOLDING, a command change by up to 2 % of `full_kpa` is ignored.
+/// @param full_mm  displacement of the finger at `full_kpa`, > 0. After HOLDING, the finger is in free motion
+/// again when its reading is below the reading at contact by 5 % of `full_mm`, and by 10 % of this reading.
 [[nodiscard]] GripParts parts_of(const Recording& recording, std::size_t channel,
-                                 const std::vector<double>& predicted_mm, double full_kpa);
+                                 const std::vector<double>& predicted_mm, double full_kpa, double full_mm);
 
 }  // namespace softgrip::sysid::health

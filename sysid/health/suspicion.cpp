@@ -77,6 +77,14 @@ bool allows_for_temperature(const FingerHealth& health) {
   });
 }
 
+std::string sentence_without_alarm(const FingerHealth& health) {
+  if (health.latest(HealthNumber::gain) || health.latest(HealthNumber::lag))
+    return "No indicator has changed at " + name_in_text(health) + ".";
+  return "No grip of " + name_in_text(health) +
+         " contains enough free motion for the gain and the lag, so a change of them cannot be detected. The "
+         "other indicators have not changed.";
+}
+
 }  // namespace
 
 Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChange>& shared) {
@@ -119,7 +127,7 @@ std::string health_sentence(const FingerHealth& health, const Suspicion& suspici
   const std::vector<HealthAlarm> alarms = health.standing();
   if (health.state == FingerState::learning)
     return "There are too few grips to determine the reference values of " + name_in_text(health) + ".";
-  if (alarms.empty()) return "No indicator has changed at " + name_in_text(health) + ".";
+  if (alarms.empty()) return sentence_without_alarm(health);
   std::string sentence = (health.finger.empty() ? "The finger" : health.finger) + " has changed since " +
                          health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i)

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/numbers.h"
 #include "base/parallel.h"
@@ -51,35 +53,51 @@ class Profile {
       : residuals_(residuals), z_(z), index_(index), huber_mm_(huber_mm) {
     const double white = u.white_variance(static_cast<Eigen::Index>(index));
     const double deviation = u.deviation(index);
-    const double inflation = white > 0 ? std::max(1.0, deviation * deviation / white) : 1;
-    step_ = std::max(deviation, 1e-6);
+    // The covariance of the estimates does not contain a parameter at its bound. The factor for such a
+    // parameter is that of the mean of the residuals.
+    const double inflation = white > 0 ? deviation * deviation / white
+                                       : static_cast<double>(residuals.count()) / u.noise.effective_samples;
+    step_ = std::max(deviation > 0 ? deviation : u.lone_deviation(static_cast<Eigen::Index>(index)), 1e-6);
     // The cost is half the sum of squares, so the threshold is half of sigma^2 q^2. Here, sigma is the
     // standard deviation of the noise, and q is the quantile of Student's t distribution instead of the
     // normal quantile.
-    allowed_ = 0.5 * u.noise.deviation_mm * u.noise.deviation_mm * u.quantile * u.quantile * inflation;
+    allowed_ = 0.5 * u.noise.deviation_mm * u.noise.deviation_mm * u.quantile * u.quantile *
+               std::max(1.0, inflation);
     at_minimum_ = cost_at(z, z[index]).cost;
   }
 
   /// Returns the coordinate of the parameter at which the cost exceeds its minimum by the threshold. If the
-  /// cost does not reach the threshold within the bound of the parameter, returns the bound.
-  [[nodiscard]] double edge(double direction) const {
+  /// cost does not reach the threshold within the bound of the parameter, returns the bound. Returns nullopt
+  /// if the search reaches neither the threshold nor the bound.
+  [[nodiscard]] std::optional<double> edge(double direction) const {
     const FreeParameter& p = residuals_.space().free()[index_];
     const double bound = direction < 0 ? p.lower_z() : p.upper_z();
     double inside = z_[index_];
     double outside = inside;
     std::vector<double> followed = z_;
     double stride = 1.5 * step_;
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < most_strides; ++i) {
       outside = inside + direction * stride;
       const bool beyond = direction * (outside - bound) >= 0;
       if (beyond) outside = bound;
       const Minimum minimum = cost_at(followed, outside);
-      if (minimum.cost - at_minimum_ > allowed_) break;
+      if (minimum.cost - at_minimum_ > allowed_) return refined(std::move(followed), inside, outside);
       if (beyond) return bound;
       followed = minimum.z;
       inside = outside;
       stride *= 1.6;
     }
+    return std::nullopt;
+  }
+
+ private:
+  /// Largest number of steps from the minimum. The steps grow, so that together they span 10^8 first steps.
+  static constexpr int most_strides = 40;
+
+  /// Returns the coordinate at which the cost exceeds its minimum by the threshold. This coordinate lies
+  /// between `inside` and `outside`.
+  /// @param followed  minimum of the other parameters at `inside`.
+  [[nodiscard]] double refined(std::vector<double> followed, double inside, double outside) const {
     for (int i = 0; i < 10; ++i) {
       const double middle = (inside + outside) / 2;
       const Minimum minimum = cost_at(followed, middle);
@@ -93,7 +111,6 @@ class Profile {
     return (inside + outside) / 2;
   }
 
- private:
   /// Returns the smallest cost if the parameter has the value `held`. The search for the other parameters
   /// starts at `from`.
   [[nodiscard]] Minimum cost_at(const std::vector<double>& from, double held) const;
@@ -219,20 +236,20 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
 void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,
                   double huber_mm, unsigned threads, std::vector<Estimate>& estimates) {
   const auto& free = residuals.space().free();
-  std::vector<Interval> intervals(free.size());
+  std::vector<std::optional<double>> edges(2 * free.size());
   parallel_for(2 * free.size(), threads, [&](std::size_t job) {
     const std::size_t index = job / 2;
     if (free[index].kind != FreeParameter::Kind::model || uncertainty.without_effect[index]) return;
     const Profile profile(residuals, z, uncertainty, huber_mm, index);
-    const double edge = std::clamp(free[index].to_value(profile.edge(job % 2 == 0 ? -1 : 1)),
-                                   free[index].lower, free[index].upper);
-    (job % 2 == 0 ? intervals[index].lower : intervals[index].upper) = edge;
+    if (const auto edge = profile.edge(job % 2 == 0 ? -1 : 1))
+      edges[job] = std::clamp(free[index].to_value(*edge), free[index].lower, free[index].upper);
   });
   for (std::size_t index = 0; index < free.size(); ++index) {
-    if (free[index].kind != FreeParameter::Kind::model || uncertainty.without_effect[index]) continue;
+    const auto &lower = edges[2 * index], &upper = edges[2 * index + 1];
+    if (!lower || !upper) continue;
     const auto found = std::find_if(estimates.begin(), estimates.end(),
                                     [&](const Estimate& e) { return e.name == free[index].name; });
-    if (found != estimates.end()) found->profile95 = intervals[index];
+    if (found != estimates.end()) found->profile95 = Interval{*lower, *upper};
   }
 }
 

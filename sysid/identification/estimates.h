@@ -33,7 +33,9 @@ void name_the_sum(std::vector<Estimate>& parameters);
 /// Computes profile95 of every fitted model parameter in `estimates`, which has the order of
 /// parameter_estimates(). The threshold for the sum of squares is the threshold of a likelihood-ratio test,
 /// multiplied by a factor for the correlation of the residuals. The factor is the variance of the parameter
-/// for correlated residuals, divided by its variance for white noise, but at least 1.
+/// for correlated residuals, divided by its variance for white noise, but at least 1. For a parameter at a
+/// bound, the factor is the number of residuals divided by their effective number. profile95 stays empty if
+/// the search reaches neither the threshold nor the bound of the parameter.
 void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,
                   double huber_mm, unsigned threads, std::vector<Estimate>& estimates);
 

@@ -30,7 +30,7 @@ struct Estimate {
   /// another parameter.
   std::optional<Interval> ci95;
   std::optional<Interval> profile95;  ///< 95 % interval by profile likelihood; empty if it was not requested
-                                      ///< or if the value is not a fitted model parameter
+                                      ///< or not found, or if the value is not a fitted model parameter
   bool free = false;
   /// True: half the width of the interval is at most half of the larger of two numbers: the magnitude of the
   /// value and its typical change. For a stiffness or damping, only the value counts.

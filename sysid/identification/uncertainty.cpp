@@ -31,6 +31,10 @@ struct Coordinates {
   std::vector<bool> unseen;  ///< per coordinate, true: a change along it changes no residual measurably
 };
 
+/// Largest effect of a parameter that counts as no effect, as a share of the noise. The effect is the norm of
+/// the change of all residuals, and the noise is the norm of the noise in all residuals.
+constexpr double negligible_effect = 1e-6;
+
 /// Number of rows that are processed together. These rows fit into the cache of a processor.
 constexpr Index rows_at_once = 1024;
 
@@ -228,6 +232,7 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   const std::size_t rows = residuals.count();
   Uncertainty u{MatrixXd::Zero(n, 0),
                 Eigen::VectorXd::Zero(n),
+                Eigen::VectorXd::Zero(n),
                 std::vector<bool>(z.size()),
                 std::vector<bool>(z.size()),
                 {},
@@ -258,12 +263,14 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   std::vector<Index> keep;
   Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(n);
   for (Index row = 0; row < jacobian.rows(); ++row) squares += jacobian.row(row).cwiseAbs2();
-  const double largest = n > 0 ? std::sqrt(squares.maxCoeff()) : 0;
+  const double noise_norm_mm = u.noise.deviation_mm * std::sqrt(static_cast<double>(rows));
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const FreeParameter& p = residuals.space().free()[at];
     const double tolerance = 1e-6 * std::max(1.0, std::abs(z[at]));
-    u.without_effect[at] = std::sqrt(squares(i)) <= 1e-9 * largest;
+    const double column_mm = std::sqrt(squares(i));
+    u.without_effect[at] = !(column_mm * (p.upper_z() - p.lower_z()) > negligible_effect * noise_norm_mm);
+    if (!u.without_effect[at]) u.lone_deviation(i) = u.noise.deviation_mm / column_mm;
     u.at_bound[at] = z[at] <= p.lower_z() + tolerance || z[at] >= p.upper_z() - tolerance;
     if (!u.without_effect[at] && !u.at_bound[at]) keep.push_back(i);
   }

@@ -55,7 +55,12 @@ struct Uncertainty {
   /// without effect are zero. A direction that the data do not determine has a very large deviation.
   Eigen::MatrixXd root;
   Eigen::VectorXd white_variance;  ///< variance of each z under the assumption of white noise
+  /// Standard deviation of each z if all other coordinates were known and the noise were white; 0: the
+  /// parameter is without effect.
+  Eigen::VectorXd lone_deviation;
   std::vector<bool> at_bound;
+  /// True: a change of the parameter over its whole permitted range changes the residuals by a negligible
+  /// share of the noise.
   std::vector<bool> without_effect;
   NoiseModel noise;
   double quantile = limits::deviate;  ///< half width of a 95 % interval in standard deviations: two-sided

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/rate_limit.h"
 #include "model/blocks/transport_delay.h"
 #include "model/envelope_map.h"
@@ -145,6 +146,9 @@ class PressureMemory {
   double steepest_;  ///< largest slope dg/dp of the hysteretic state g with respect to the pressure p
 };
 
+/// Weight of a creep branch without creep, as a share of the displacement range per largest pressure.
+constexpr double no_creep_share = 1e-7;
+
 std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
   if (!structure.creep) return 0;
   if (structure.slow_creep) return grid.ladder_s.size();
@@ -191,6 +195,13 @@ double steepest_state(const NonlinearNumbers& numbers) {
   return std::max(1.0, 2 * numbers.narrowing);
 }
 
+double least_compliance_mm_per_kpa(double tau_s) {
+  // The margin prevents that stiffness or damping exceed their upper limit due to rounding.
+  constexpr double margin = 1e-9;
+  const auto& [stiffness, damping] = model::KelvinVoigt<double>::repeated;
+  return (1 + margin) * std::max(1 / stiffness.upper, tau_s / damping.upper);
+}
+
 ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& grid,
                            const std::vector<Record>& records)
     : hysteretic_(!structure.hysteretic                              ? 0
@@ -213,6 +224,12 @@ ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& 
     zero_drift_.push_back(count_);
     count_ += static_cast<Eigen::Index>(knots);
   }
+  const bool needed =
+      std::any_of(unsettled_.begin(), unsettled_.end(), [](Eigen::Index c) { return c >= 0; });
+  for (std::size_t b = 0; b < branches_; ++b)
+    least_creep_.push_back(needed ? std::max(no_creep_share * grid.span_mm / grid.largest_kpa,
+                                             least_compliance_mm_per_kpa(grid.ladder_s[b]))
+                                  : 0);
 }
 
 std::vector<RowPlace> rows_of(const std::vector<Record>& records) {

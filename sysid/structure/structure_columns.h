@@ -55,6 +55,10 @@ class ColumnLayout {
   [[nodiscard]] Eigen::Index creep(std::size_t branch) const {
     return hysteresis(hysteretic_) + static_cast<Eigen::Index>(branch);
   }
+  /// Returns the smallest weight of a creep branch [mm/kPa]. It is above 0 if the unsettled creep of a record
+  /// needs the time constant of the branch. The model then contains the branch even without creep, and the
+  /// weight must be a compliance that the block of the branch can represent.
+  [[nodiscard]] double least_creep_mm_per_kpa(std::size_t branch) const { return least_creep_[branch]; }
   [[nodiscard]] Eigen::Index hinged(std::size_t hinge, std::size_t branch) const {
     return creep(branches_) + static_cast<Eigen::Index>(hinge * hinge_branches_ + branch);
   }
@@ -92,6 +96,7 @@ class ColumnLayout {
   bool linear_;
   std::vector<Eigen::Index> offset_, unsettled_, zero_drift_;
   std::vector<std::size_t> knots_;
+  std::vector<double> least_creep_;
   double knot_interval_s_;
   Eigen::Index count_ = 0;
 };
@@ -100,6 +105,10 @@ class ColumnLayout {
 /// + eta) but at least 1. This slope occurs at the reversal of a saturated loop. The element is monotonic if
 /// its elastic gain is at least beta times this slope.
 [[nodiscard]] double steepest_state(const NonlinearNumbers& numbers);
+
+/// Returns the smallest compliance [mm/kPa] of a creep branch with the time constant `tau_s` that the block
+/// model::KelvinVoigt can represent.
+[[nodiscard]] double least_compliance_mm_per_kpa(double tau_s);
 
 /// Record and sample to which a row of the matrix belongs. Each sample with a reading has one row.
 struct RowPlace {

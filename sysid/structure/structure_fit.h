@@ -51,9 +51,14 @@ struct FittedStructure {
 
 /// Returns the model and the estimated start states of the records. Operators with weight 0 are omitted.
 /// Exception: a creep branch stays in the model if the unsettled creep of a record needs its time constant.
+/// The projection then gives it a weight above 0 (ColumnLayout::least_creep_mm_per_kpa()).
 /// @param drive  input of the model. With Drive::measured, the lag belongs to the finger and comes after the
 /// pressure sensor.
 [[nodiscard]] FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive);
+
+/// Returns true if point_of() raises the weight of a creep branch, because the block cannot represent so
+/// small a compliance. The error of the model then differs from the error of the fit.
+[[nodiscard]] bool has_raised_creep(const FittedStructure& fit, const std::vector<Record>& records);
 
 /// Start point of a structure with one more linear mode.
 struct StartOfMode {

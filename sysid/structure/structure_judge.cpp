@@ -113,7 +113,8 @@ StructureTrial StructureJudge::trial_with(const FittedStructure& whole) const {
   trial.ridge = whole.ridge;
   trial.numbers = whole.numbers;
   trial.point = point_of(whole, records_, options_.drive);
-  trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
+  trial.rmse_mm = has_raised_creep(whole, records_) ? rmse_of(trial.point.model, trial.point.starts, records_)
+                                                    : std::sqrt(whole.mean_square_mm2);
   trial.converged = whole.converged;
   trial.start_rmse_mm = whole.start_rmse_mm;
   return trial;
@@ -133,7 +134,8 @@ StructureTrial StructureJudge::judge(const FittedStructure& whole, int iteration
 StructureTrial StructureJudge::judge_near(const BaseStructure& structure, double ridge,
                                           const NonlinearNumbers& numbers, double below_mm) const {
   const FittedStructure whole = fit(structure, ridge, &numbers);
-  if (!(std::sqrt(whole.mean_square_mm2) < below_mm)) return trial_with(whole);
+  StructureTrial trial = trial_with(whole);
+  if (!(trial.rmse_mm < below_mm)) return trial;
   return judge(whole, fold_iterations);
 }
 

@@ -25,12 +25,6 @@ namespace {
 /// Stiffness k0 of a spring that is practically rigid. The instantaneous gain of the model is then alpha
 /// (Bouc-Wen) or the gain of the elastic play operator.
 constexpr double rigid_kpa_per_mm = 1e9;
-/// Compliance of a creep branch with weight 0 [mm/kPa]. The model contains this branch because the unsettled
-/// creep of a record needs its time constant.
-constexpr double next_to_no_creep = 1e-7;
-/// Largest damping of a creep branch [kPa s/mm]. It is the upper bound of this parameter in the block. A slow
-/// creep branch with weight 0 has this damping.
-constexpr double largest_dashpot_kpa_s_per_mm = 1e8;
 
 class Builder {
  public:
@@ -94,14 +88,11 @@ class Builder {
   }
 
   void add_creep() {
-    bool needed = false;
-    for (std::size_t r = 0; r < layout_.records(); ++r) needed |= layout_.unsettled(r) >= 0;
     std::vector<double> values{rigid_kpa_per_mm};
     for (std::size_t b = 0; b < layout_.branches(); ++b) {
       const double w = weight(layout_.creep(b));
-      if (w <= 0 && !needed) continue;
-      const double k =
-          1 / std::max({w, next_to_no_creep, fit_.grid.ladder_s[b] / largest_dashpot_kpa_s_per_mm});
+      if (w <= 0) continue;
+      const double k = 1 / std::max(w, least_compliance_mm_per_kpa(fit_.grid.ladder_s[b]));
       values.insert(values.end(), {k, k * fit_.grid.ladder_s[b]});
     }
     if (values.size() > 1) add<model::KelvinVoigt>(std::move(values));
@@ -144,6 +135,15 @@ void jump(StartState& start, double from_kpa, double first_kpa) {
 }
 
 }  // namespace
+
+bool has_raised_creep(const FittedStructure& fit, const std::vector<Record>& records) {
+  const ColumnLayout layout(fit.structure, fit.grid, records);
+  for (std::size_t b = 0; b < layout.branches(); ++b) {
+    const double w = fit.weights(layout.creep(b));
+    if (w > 0 && w < least_compliance_mm_per_kpa(fit.grid.ladder_s[b])) return true;
+  }
+  return false;
+}
 
 FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive) {
   const ColumnLayout layout(fit.structure, fit.grid, records);

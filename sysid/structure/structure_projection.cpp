@@ -32,6 +32,8 @@ class Projector {
     fitted_ = std::max(1.0, static_cast<double>(p_.columns.rows()));
     ridge_ *= p_.ridge * fitted_;
     lower_(ColumnLayout::elastic()) = p_.least_elastic;
+    for (std::size_t b = 0; b < p_.layout.branches(); ++b)
+      lower_(p_.layout.creep(b)) = p_.layout.least_creep_mm_per_kpa(b);
     // A model with zeros near its poles requires large mode gains of opposite signs. The ridge penalty of the
     // mode gains is weak, so that it permits these gains. It excludes only gains that the readings do not
     // determine.

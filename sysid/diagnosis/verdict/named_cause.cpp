@@ -93,19 +93,29 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
 namespace {
 
 /// Returns a cause that was detected in the readings before any fit.
-/// @param excess_mm  root mean square error that the affected readings cause.
-/// @param readings  number of affected readings.
+/// @param excess_mm  root mean square error that the affected readings cause, > 0.
+/// @param ci95_mm  95 % interval of `excess_mm`. Its ends are not negative.
 NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> parameters, double excess_mm,
-                             std::size_t readings, double noise_mm) {
+                             const Interval& ci95_mm, double noise_mm) {
   NamedCause named;
   named.cause = *find_cause(id);
   named.block_type = named.cause.forms.front().type;
   named.parameters = std::move(parameters);
-  const double with = std::sqrt(noise_mm * noise_mm + excess_mm * excess_mm);
-  const double gain = 100 * (1 - noise_mm / with);
-  const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, readings)));
-  named.gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
+  const auto gain_percent = [noise_mm](double error_mm) {
+    return error_mm > 0 ? 100 * (1 - noise_mm / std::hypot(noise_mm, error_mm)) : 0;
+  };
+  const double lower = gain_percent(ci95_mm.lower), upper = gain_percent(ci95_mm.upper);
+  named.gain_percent = {gain_percent(excess_mm), (upper - lower) / (2 * limits::deviate), lower, upper};
   return named;
+}
+
+/// Returns the 95 % interval of OutlierEvidence::excess_mm. The interval of the size may begin at 0 if the
+/// sizes differ much, but the root mean square of the sizes is not below the smallest size.
+Interval excess_interval_mm(const OutlierEvidence& outliers) {
+  double smallest_mm = outliers.size_mm;
+  for (const double size_mm : outliers.sizes_mm) smallest_mm = std::min(smallest_mm, std::abs(size_mm));
+  return {std::sqrt(outliers.share_low) * std::max(outliers.size_low_mm, smallest_mm),
+          std::sqrt(outliers.share_high) * outliers.size_high_mm};
 }
 
 }  // namespace
@@ -122,14 +132,17 @@ std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers, cons
           outliers.size_mm,
           {outliers.size_low_mm, outliers.size_high_mm},
           true}},
-        outliers.excess_mm, outliers.count, noise_mm));
+        outliers.excess_mm, excess_interval_mm(outliers), noise_mm));
   }
   if (sampling.present) {
     std::vector<CauseParameter> parameters;
     if (sampling.interval_s > 0) parameters.push_back({"interval_s", "s", sampling.interval_s, {}, false});
     if (sampling.frozen_s > 0) parameters.push_back({"frozen_s", "s", sampling.frozen_s, {}, false});
+    const double error_mm =
+        sampling.excess_mm / std::sqrt(static_cast<double>(std::max<std::size_t>(1, sampling.hidden)));
     named.push_back(cause_in_readings(causes::Sampling::id, std::move(parameters), sampling.excess_mm,
-                                      sampling.hidden, noise_mm));
+                                      {sampling.excess_mm - error_mm, sampling.excess_mm + error_mm},
+                                      noise_mm));
   }
   return named;
 }

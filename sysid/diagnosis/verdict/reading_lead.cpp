@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/causes/clock_offset.h"
-#include "sysid/limits/limits.h"
+#include "sysid/identification/uncertainty.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -48,15 +49,20 @@ class LeadSearch {
 
  private:
   /// Returns the 95 % interval of the lead, computed from the parabola through the mean squares at three
-  /// values of the lead.
+  /// values of the lead. Correlated residuals count as their effective number of samples.
   [[nodiscard]] Interval interval(const LeadFit& best, double step_s) const {
     const double lead_s = best.lead.lead_s, least_mm2 = best.fit.mean_square_mm2;
     const double beside_mm2 =
         0.5 * (at(lead_s - step_s).fit.mean_square_mm2 + at(lead_s + step_s).fit.mean_square_mm2);
-    const auto readings = static_cast<double>(reading_count(best.records));
+    const std::vector<std::span<const double>> residuals(best.fit.residual_mm.begin(),
+                                                         best.fit.residual_mm.end());
+    const double samples = fit_noise(autocovariance_of(residuals)).effective_samples;
     const double rise_mm2 = beside_mm2 - least_mm2;
-    const double deviation_s = rise_mm2 > 0 ? step_s * std::sqrt(least_mm2 / (readings * rise_mm2)) : lead_s;
-    return {lead_s - limits::deviate * deviation_s, lead_s + limits::deviate * deviation_s};
+    const double deviation_s = rise_mm2 > 0 ? step_s * std::sqrt(least_mm2 / (samples * rise_mm2)) : lead_s;
+    const std::size_t parameters =
+        1 + structure_space(best.records, best.fit.point.model, best.fit.causes).size();
+    const double half_s = t_quantile(samples - static_cast<double>(parameters)) * deviation_s;
+    return {lead_s - half_s, lead_s + half_s};
   }
 
   const SearchData& data_;

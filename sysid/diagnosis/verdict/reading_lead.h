@@ -12,7 +12,8 @@ namespace softgrip::sysid {
 struct ReadingLead {
   double lead_s = 0;
   /// 95 % interval of the lead. It is computed from the mean square error as a function of the lead. For each
-  /// value of the lead, all parameters of the structure are refitted.
+  /// value of the lead, all parameters of the structure are refitted. The interval takes the correlation of
+  /// the residual into account.
   Interval ci95;
 };
 

@@ -39,6 +39,21 @@ TEST(Signature, AVacuumActuatorRestsAtItsHighestPressure) {
     EXPECT_EQ(required_at(appears, vacuum), required_at(appears, grip()));
 }
 
+TEST(Signature, NegativeDisplacementsAreLargeAtTheLowestDisplacement) {
+  std::vector<OperatingPoint> vacuum = grip();
+  for (OperatingPoint& at : vacuum) at = {-at.pressure_kpa, at.rate_kpa_per_s, -2 * at.motion};
+  EXPECT_EQ(required_at(Appears::displaced, vacuum),
+            (std::vector<bool>{false, false, false, true, true, true, false, false}));
+}
+
+TEST(Signature, TheOffsetOfTheDisplacementDoesNotMatter) {
+  for (const double offset_mm : {-8.0, -3.0, 100.0}) {
+    std::vector<OperatingPoint> shifted = grip();
+    for (OperatingPoint& at : shifted) at.motion += offset_mm;
+    EXPECT_EQ(required_at(Appears::displaced, shifted), required_at(Appears::displaced, grip())) << offset_mm;
+  }
+}
+
 TEST(Signature, RunWithoutRestHasNoSampleAtRest) {
   const std::vector<OperatingPoint> sine{{0, 30, 0}, {30, 30, 5}, {60, 30, 10}, {30, 30, 5}, {0, 30, 0}};
   const std::vector<bool> at_rest = required_at(Appears::at_rest, sine);

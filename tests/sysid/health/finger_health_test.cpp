@@ -100,6 +100,21 @@ TEST(FingerHealth, StateIsLearningWithTooFewGrips) {
   EXPECT_NE(health_sentence(health, {}).find("too few grips"), std::string::npos);
 }
 
+TEST(FingerHealth, TheSentenceStatesThatGainAndLagWereNeverComputed) {
+  EXPECT_EQ(health_sentence(judged({}), {}), "No indicator has changed at left.");
+  Life life;
+  life.from_day = 0;
+  life.change[HealthNumber::gain] = NAN;
+  EXPECT_EQ(health_sentence(judged(life), {}), "No indicator has changed at left.");
+  life.change[HealthNumber::lag] = NAN;
+  const FingerHealth health = judged(life);
+  EXPECT_EQ(health.state, FingerState::steady);
+  EXPECT_EQ(
+      health_sentence(health, {}),
+      "No grip of left contains enough free motion for the gain and the lag, so a change of them cannot "
+      "be detected. The other indicators have not changed.");
+}
+
 TEST(FingerHealth, GripsOfOneDayFormOnePoint) {
   const FingerHealth health = judged({});
   ASSERT_EQ(health.points.size(), 30U);

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <vector>
 
+#include "model/named.h"
 #include "tests/sysid/health/grip_fixture.h"
 #include "tests/sysid/simulated.h"
 
@@ -76,6 +79,35 @@ INSTANTIATE_TEST_SUITE_P(
                     Changed{"contact", {.object_mm = 11}, HealthNumber::contact, -1, 0.05}),
     [](const auto& test) { return test.param.what; });
 
+/// Returns the model of a finger whose displacement is `factor` times that of the finger of `model`.
+model::Model scaled(const model::Model& model, double factor) {
+  std::vector<double> values = model::flat_values(model);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string_view unit = model::parameter_spec(model, i).unit;
+    if (unit.starts_with("mm")) values[i] *= factor;
+    if (unit.ends_with("/mm")) values[i] /= factor;
+  }
+  return model::with_values(model, values);
+}
+
+TEST(GripScore, DisplacementIndicatorsOfASmallFingerScaleWithItsDisplacement) {
+  constexpr double factor = 0.08;
+  const model::Model twin = sysid::loaded("bench_twin");
+  const ScoreBase large = score_base(twin, 60), small = score_base(scaled(twin, factor), 60);
+  ASSERT_NEAR(small.full_mm, factor * large.full_mm, 1e-3 * large.full_mm);
+  Recording recording = grip_of({.gain = 0.9, .loop_mm = 0.3});
+  const GripScore of_large = score_of(recording, 0, large);
+  for (double& reading : recording.channels[0].displacement_mm) reading *= factor;
+  const GripScore of_small = score_of(recording, 0, small);
+  for (const auto number :
+       {HealthNumber::gain, HealthNumber::zero, HealthNumber::creep, HealthNumber::loop_width}) {
+    ASSERT_TRUE(std::isfinite(of_large[number])) << sysid::info_of(number).id;
+    EXPECT_NEAR(of_small[number], factor * of_large[number], 1e-4 * small.full_mm)
+        << sysid::info_of(number).id;
+  }
+  EXPECT_NEAR(of_small[HealthNumber::lag], of_large[HealthNumber::lag], 1e-4);
+}
+
 TEST(GripScore, LeakIndicatorEqualsTheLeakRateDuringHolding) {
   const GripScore before = scored({}), after = scored({.leak_kpa_per_s = 0.5});
   EXPECT_NEAR(after[HealthNumber::leak] - before[HealthNumber::leak], 0.5, 0.03);
@@ -110,7 +142,7 @@ TEST(GripScore, MissingReadingsGiveNoDisplacementIndicators) {
 TEST(GripParts, AMissingReadingAtTheContactKeepsTheFreeMotion) {
   Recording grip = grip_of({});
   const std::vector<double> predicted(grip.channels[0].size(), 0.0);
-  const GripParts whole = parts_of(grip, 0, predicted, 60);
+  const GripParts whole = parts_of(grip, 0, predicted, 60, 20);
   std::size_t missing = 0;
   for (const RecordedEvent& event : grip.events) {
     if (event.kind != "contact") continue;
@@ -120,7 +152,7 @@ TEST(GripParts, AMissingReadingAtTheContactKeepsTheFreeMotion) {
     ++missing;
   }
   ASSERT_EQ(missing, 1U);
-  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  const GripParts parts = parts_of(grip, 0, predicted, 60, 20);
   const auto free_samples = [](const GripParts& all) {
     return static_cast<double>(std::count(all.at.begin(), all.at.end(), Part::free));
   };
@@ -131,7 +163,7 @@ TEST(GripParts, AMissingReadingAtTheContactKeepsTheFreeMotion) {
 TEST(GripParts, HeldLastsFromHoldingToRelease) {
   const Recording grip = grip_of({});
   const std::vector<double> predicted(grip.channels[0].size(), 0.0);
-  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  const GripParts parts = parts_of(grip, 0, predicted, 60, 20);
   double held_from = NAN, held_to = NAN;
   for (std::size_t i = 0; i < parts.at.size(); ++i) {
     if (parts.at[i] != Part::held) continue;
@@ -147,7 +179,7 @@ TEST(GripParts, SamplesAfterAFaultBelongToNoPart) {
   Recording grip = grip_of({});
   grip.events.insert(grip.events.begin() + 1, {1.0, "fault_latched", "left", "F201", ""});
   const std::vector<double> predicted(grip.channels[0].size(), 0.0);
-  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  const GripParts parts = parts_of(grip, 0, predicted, 60, 20);
   for (std::size_t i = 0; i < parts.at.size(); ++i) {
     if (grip.channels[0].time_s[i] > 1.01) {
       ASSERT_EQ(parts.at[i], Part::neither);
@@ -160,7 +192,7 @@ TEST(GripParts, StepWithHoldingButNoContactIsNotFreeMotion) {
   std::erase_if(grip.events, [](const RecordedEvent& event) { return event.kind == "contact"; });
   grip.events.insert(grip.events.begin() + 1, {2.0, "step_started", "", "1", ""});
   const std::vector<double> predicted(grip.channels[0].size(), 0.0);
-  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  const GripParts parts = parts_of(grip, 0, predicted, 60, 20);
   EXPECT_EQ(parts.at[150], Part::free);
   EXPECT_EQ(parts.at[250], Part::neither);
 }

@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
+#include "model/blocks/transport_delay.h"
+#include "model/named.h"
 #include "sysid/fitting/bounded_solve.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/score.h"
@@ -137,6 +139,61 @@ TEST(Uncertainty, AgreesWithMatrixAlgebraForCorrelatedNoise) {
   const Eigen::MatrixXd covariance = found.root * found.root.transpose();
   for (Eigen::Index i = 0; i < covariance.rows(); ++i)
     EXPECT_NEAR(covariance(i, i) / expected(i, i), 1, 1e-6) << i;
+}
+
+/// Residuals whose column `index` of the Jacobian is multiplied by a factor.
+class MultipliedColumn : public Residuals {
+ public:
+  MultipliedColumn(const Residuals& of, std::size_t index, double factor)
+      : Residuals(of.records(), of.space()), of_(of), index_(index), factor_(factor) {}
+
+  bool evaluate(std::span<const double> z, std::span<double> r, std::span<double> jacobian) const override {
+    if (!of_.evaluate(z, r, jacobian)) return false;
+    for (std::size_t i = index_; i < jacobian.size(); i += z.size()) jacobian[i] *= factor_;
+    return true;
+  }
+
+ private:
+  const Residuals& of_;
+  std::size_t index_;
+  double factor_;
+};
+
+TEST(Uncertainty, TheEffectOfAParameterDoesNotDependOnOtherParameters) {
+  const model::Model truth = loaded("bench_twin");
+  const std::vector<Record> records =
+      make_records({simulated(truth, model::SignalName::tp1, 25, 0.02, 1)}, {});
+  const auto residuals = residuals_for(records, FitSpace(truth, records, {0, 1, 2, 3, 8, 9}));
+  const std::vector<double> z = residuals->space().z({truth, rest_starts(truth, records)});
+  for (const double factor : {0.0, 1e-12, 1e12}) {
+    const Uncertainty found = uncertainty_at(MultipliedColumn(*residuals, 0, factor), z, HUGE_VAL);
+    EXPECT_EQ(found.without_effect[0], factor < 1) << factor;
+    for (std::size_t i = 1; i < z.size(); ++i) EXPECT_FALSE(found.without_effect[i]) << factor << " " << i;
+  }
+}
+
+// The noise is too large for an estimate of the delay, so some of the estimates are at the lower bound.
+TEST(Profile, ContainsASmallDelayIfTheEstimateIsAtItsBound) {
+  constexpr double true_delay_s = 0.002;
+  model::Model truth = loaded("bench_twin");
+  truth.blocks[*model::position_of<model::TransportDelay>(truth)].values[0] = true_delay_s;
+  IdentifyOptions options;
+  options.free = {"transport_delay.delay_s"};
+  options.profile = true;
+  options.starts = 1;
+  int at_bound = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto result = identify({simulated(truth, model::SignalName::tp1, 10, 4, seed)}, truth, options);
+    ASSERT_TRUE(result);
+    const auto delay = std::find_if(result->parameters.begin(), result->parameters.end(),
+                                    [](const Estimate& e) { return e.name == "transport_delay.delay_s"; });
+    ASSERT_TRUE(delay != result->parameters.end() && delay->profile95) << seed;
+    at_bound += delay->ci95 ? 0 : 1;
+    EXPECT_LE(delay->profile95->lower, true_delay_s) << seed;
+    EXPECT_GE(delay->profile95->upper, true_delay_s) << seed;
+    EXPECT_LT(delay->profile95->upper, 0.5) << seed;
+  }
+  EXPECT_GE(at_bound, 2);
 }
 
 TEST(Identify, IsRefusedIfNothingRemainsToBeFitted) {

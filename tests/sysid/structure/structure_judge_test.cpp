@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "model/blocks/ageing.h"
 #include "model/blocks/bouc_wen.h"
@@ -64,7 +65,7 @@ TEST(StaysBounded, IsFalseIfOneRecordIsExceeded) {
 }
 
 /// Returns a log of 60 s that begins at 20 kPa while 4 mm of creep remain from the time before the log.
-Record begun_during_creep() {
+Log begun_during_creep() {
   Log log;
   log.name = "begun_during_creep";
   for (int i = 0; i < 1200; ++i) {
@@ -81,17 +82,62 @@ Record begun_during_creep() {
   std::mt19937 random(7);
   std::normal_distribution<double> noise_mm(0, 0.02);
   for (double& reading : log.displacement_mm) reading += noise_mm(random);
+  return log;
+}
+
+/// Returns the record of a log whose times and readings are multiplied by factors.
+Record multiplied(Log log, double time_factor, double displacement_factor) {
+  for (double& t_s : log.time_s) t_s *= time_factor;
+  for (double& reading : log.displacement_mm) reading *= displacement_factor;
   return make_records({log}, {})[0];
 }
 
 TEST(StructureJudge, AnEstimatedStartDoesNotIncreaseTheErrorOnTheFirstBlock) {
-  const std::vector<Record> records{begun_during_creep()};
+  const std::vector<Record> records{multiplied(begun_during_creep(), 1, 1)};
   ASSERT_TRUE(records[0].start_unknown);
   const StructureChoiceOptions options;
   const StructureTrial trial = StructureJudge(records, options).judge({.characteristic = false}, 1e-5);
   ASSERT_EQ(trial.block_losses_mm2.size(), 10U);
   const double first_mm = std::sqrt(trial.block_losses_mm2[0]);
   EXPECT_LT(first_mm, 3 * trial.rmse_mm) << "RMSE of the fit: " << trial.rmse_mm;
+}
+
+TEST(StructureJudge, TheErrorOfAnUnsettledStartDoesNotIncreaseInOtherUnits) {
+  const BaseStructure structure{.characteristic = false};
+  const StructureChoiceOptions options;
+  const std::vector<Record> records{multiplied(begun_during_creep(), 1, 1)};
+  const StructureTrial usual = StructureJudge(records, options).judge(structure, 1e-5);
+  for (const auto& [time_factor, displacement_factor] :
+       {std::pair{1.0, 0x1p-10}, std::pair{1000.0, 1.0}, std::pair{1000.0, 0x1p-8}}) {
+    const std::vector<Record> other{multiplied(begun_during_creep(), time_factor, displacement_factor)};
+    const StructureTrial trial = StructureJudge(other, options).judge(structure, 1e-5);
+    EXPECT_TRUE(model::validate(trial.point.model).empty()) << time_factor << ' ' << displacement_factor;
+    EXPECT_LT(trial.rmse_mm / displacement_factor, 1.01 * usual.rmse_mm)
+        << time_factor << ' ' << displacement_factor;
+    EXPECT_NEAR(rmse_of(trial.point.model, trial.point.starts, other) / trial.rmse_mm, 1, 1e-3)
+        << time_factor << ' ' << displacement_factor;
+  }
+}
+
+TEST(StructureJudge, TheErrorIsThatOfTheModelIfTheBlockCannotRepresentTheCreep) {
+  const model::Model creeping =
+      model::with_block(finger(0.5, 0.1), {model::block_type<model::KelvinVoigt>(), {1e9, 10, 20}});
+  Log log;
+  log.name = "slow_and_small";
+  const Record usual = stroke(creeping);
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    log.time_s.push_back(usual.time_s[i]);
+    log.pressure_command_kpa.push_back(usual.drive_kpa[i]);
+    log.displacement_mm.push_back(usual.reading_mm[i]);
+  }
+  const std::vector<Record> records{multiplied(log, 1e5, 1e-6)};
+  const StructureChoiceOptions options;
+  const BaseStructure structure{.characteristic = false};
+  const StructureJudge judge(records, options);
+  ASSERT_TRUE(has_raised_creep(judge.fit(structure, 1e-5), records));
+  const StructureTrial trial = judge.judge(structure, 1e-5);
+  EXPECT_TRUE(model::validate(trial.point.model).empty());
+  EXPECT_NEAR(rmse_of(trial.point.model, trial.point.starts, records) / trial.rmse_mm, 1, 1e-9);
 }
 
 }  // namespace

@@ -70,6 +70,54 @@ TEST(BlockNumbers, HaveTheDeprecatedNameOfTheParameter) {
   EXPECT_EQ(numbers[1].formerly, "levelling_per_kpa");
 }
 
+/// Returns the error reduction [%] by the outliers of a log with 2000 readings. The noise is 0.02 mm.
+/// @param sizes_mm  distances of the outliers from the other readings.
+Spread reduction_by_outliers(const std::vector<double>& sizes_mm) {
+  constexpr double noise_mm = 0.02;
+  Log log;
+  log.name = "outliers";
+  for (int i = 0; i < 2000; ++i) {
+    log.time_s.push_back(0.02 * i);
+    log.pressure_command_kpa.push_back(30);
+    log.displacement_mm.push_back(10 + noise_mm * (i % 2 == 0 ? 1 : -1));
+  }
+  for (std::size_t k = 0; k < sizes_mm.size(); ++k) log.displacement_mm[300 * (k + 1)] += sizes_mm[k];
+  std::vector<Record> records = make_records({log}, {});
+  const OutlierEvidence outliers = hide_outliers(records, noise_mm);
+  EXPECT_EQ(outliers.count, sizes_mm.size());
+  EXPECT_TRUE(outliers.present);
+  return causes_in_readings(outliers, {}, noise_mm, model::OutputUnit::mm).at(0).gain_percent;
+}
+
+TEST(CausesInReadings, TheErrorReductionOfLargeOutliersIsAtMost100Percent) {
+  const Spread reduction = reduction_by_outliers({41, 42, 43, 44, 45});
+  EXPECT_GT(reduction.value, 95);
+  EXPECT_LT(reduction.lower, reduction.value);
+  EXPECT_GT(reduction.upper, reduction.value);
+  EXPECT_LE(reduction.upper, 100);
+  EXPECT_GT(reduction.standard_error, 0);
+}
+
+TEST(CausesInReadings, OutliersOfDifferentSizesReduceTheErrorSignificantly) {
+  const Spread reduction = reduction_by_outliers({40, 1, 1, 1, 1});
+  EXPECT_GT(reduction.lower, 0);
+  EXPECT_LT(reduction.lower, reduction.value);
+  EXPECT_GT(reduction.upper, reduction.value);
+  EXPECT_LE(reduction.upper, 100);
+}
+
+TEST(CausesInReadings, TheErrorReductionOfRepeatedReadingsIsBetween0And100Percent) {
+  for (const std::size_t hidden : {std::size_t{1}, std::size_t{4}, std::size_t{400}}) {
+    const SamplingEvidence sampling{
+        .interval_s = 0.1, .excess_mm = 3, .hidden = hidden, .readings = 1000, .present = true};
+    const Spread reduction = causes_in_readings({}, sampling, 0.02, model::OutputUnit::mm)[0].gain_percent;
+    EXPECT_GE(reduction.lower, 0) << hidden;
+    EXPECT_LT(reduction.lower, reduction.value) << hidden;
+    EXPECT_GT(reduction.upper, reduction.value) << hidden;
+    EXPECT_LE(reduction.upper, 100) << hidden;
+  }
+}
+
 TEST(AlternativeTitle, MarksAnAlreadyNamedCauseAsFurther) {
   const Cause delay = *find_cause(causes::TransportDelay::id), lag = *find_cause(causes::ValveLag::id);
   NamedCause first, second;
