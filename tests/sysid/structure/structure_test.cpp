@@ -485,25 +485,6 @@ TEST(IdentifyStructure, ResultIsIndependentOfTheDisplacementUnit) {
   }
 }
 
-TEST(IdentifyStructure, ResultOfALogUnderPressureIsIndependentOfTheDisplacementUnit) {
-  Log log = slice(simulated(play_finger(), SignalName::tp1, rate_hz, 0.03, 7), 60, 600);
-  const auto one = identify_structure({log}, StructureQuestion::prandtl_ishlinskii);
-  ASSERT_TRUE(one) << one.error();
-  ASSERT_TRUE(one->records[0].start_unknown);
-  constexpr double factor = 0x1p-12;
-  const auto other = identify_structure({scaled(log, factor)}, StructureQuestion::prandtl_ishlinskii);
-  ASSERT_TRUE(other) << other.error();
-  EXPECT_NEAR(other->rmse_mm / factor, one->rmse_mm, 1e-3 * one->rmse_mm);
-  // The scores are computed with the models that the command writes.
-  EXPECT_NEAR(other->scores[0].rmse_mm / factor, one->scores[0].rmse_mm, 1e-2 * one->scores[0].rmse_mm);
-  EXPECT_EQ(other->structure->ridge, one->structure->ridge);
-  ASSERT_EQ(other->structure->candidates.size(), one->structure->candidates.size());
-  for (std::size_t i = 0; i < one->structure->candidates.size(); ++i) {
-    EXPECT_EQ(other->structure->candidates[i].description, one->structure->candidates[i].description);
-    EXPECT_EQ(other->structure->candidates[i].chosen, one->structure->candidates[i].chosen) << i;
-  }
-}
-
 TEST(IdentifyStructure, FitReachesTheMinimumOfTheLinearProblem) {
   // If the nonlinear parameters have their true values, the weights result from a linear problem. A fit of
   // the same structure must reach the minimum of this problem, except for the effect of the ridge penalty.
