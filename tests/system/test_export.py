@@ -177,7 +177,7 @@ class Signals(bench.BenchTest):
         self.assertIn("so it is not a log or a series", self.export("x.csv", source="nothing.csv", expect=3).stderr)
         self.write("texts.csv", "time_s,force_n,state\n0,1,idle\n1,2,held\n")
         refused = self.export("x.csv", source="texts.csv", expect=3).stderr
-        self.assertIn("texts.csv:2:5: `idle` in column 'state' is not a number", refused)
+        self.assertIn("texts.csv:2:5: 'idle' in column 'state' is not a number", refused)
         self.assertFalse((self.folder / "x.csv").exists())
         self.assertTrue(self.export("-", "--format", "csv").stdout.startswith("time_s,left_"))
 

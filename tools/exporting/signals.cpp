@@ -81,7 +81,8 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
     if (column.bad.empty()) continue;
     const sysid::BadCell& cell = column.bad.front();
     problems.add({path, cell.at, cell.line_text,
-                  "`" + cell.text + "` in column '" + column.name + "' is not a number",
+                  "'" + document::shown(cell.text, 40) + "' in column '" + document::shown(column.name, 40) +
+                      "' is not a number",
                   "softgrip export copies texts only from recordings and logs; softgrip import converts the "
                   "file to a log"});
   }
