@@ -122,6 +122,10 @@ std::string plain_path(const std::string& path) {
   return (normal.has_filename() ? normal : normal.parent_path()).string();
 }
 
+std::string name_in_path(const std::string& path) {
+  return fs::path(plain_path(path)).filename().string();
+}
+
 ScratchFolder::ScratchFolder() {
   std::error_code none;
   const fs::path temporary = fs::temp_directory_path(none);

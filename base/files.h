@@ -43,9 +43,11 @@ struct RegularFile {
 [[nodiscard]] bool is_there(const std::string& path) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 
-/// Returns the path without "." and "..", and without a separator at the end. Its last component is therefore
-/// the name of the folder or file.
+/// Returns the path without "." and "..", and without a separator at the end.
 [[nodiscard]] std::string plain_path(const std::string& path);
+
+/// Returns the name of the folder or file to which a path leads: the last component of plain_path().
+[[nodiscard]] std::string name_in_path(const std::string& path);
 
 /// Returns true if both paths lead to the same file (device and inode), through symbolic and hard links.
 [[nodiscard]] bool same_file(const std::string& one, const std::string& other) noexcept;

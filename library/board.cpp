@@ -79,10 +79,6 @@ struct SimulatedBoard::Parts {
       : board(settings, clock), readings(settings.channels.size()) {
     clock.set(begin);
   }
-  /// Advances all fingers to the time of the clock, then places an object at a finger.
-  void place(std::size_t channel, const std::optional<simulation::PlantObject>& object) noexcept {
-    board.happen({.channel = channel, .object = object});
-  }
 
   VirtualClock clock;
   simulation::SimulatedBoard board;
@@ -159,13 +155,13 @@ void SimulatedBoard::advance(std::chrono::nanoseconds duration) noexcept {
 
 void SimulatedBoard::set_object(std::size_t channel, const std::optional<SimulatedObject>& object) noexcept {
   if (channel >= channels() || (object && !is_valid(*object))) return;
-  parts_->place(channel, object_of(object));
+  parts_->board.catch_up();
+  parts_->board.plant(channel).set_object(object_of(object));
 }
 
 double SimulatedBoard::displacement(std::size_t channel) const noexcept {
   if (channel >= channels()) return std::numeric_limits<double>::quiet_NaN();
-  // The event changes no object. It only advances the fingers to the time of the clock.
-  parts_->place(channel, parts_->board.plant(channel).object());
+  parts_->board.catch_up();
   return parts_->board.plant(channel).displacement_mm();
 }
 

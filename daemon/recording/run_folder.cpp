@@ -102,9 +102,9 @@ int RunFolder::reserve(std::int64_t end) noexcept {
 }
 
 void RunFolder::release_room() noexcept {
+  if (reserved_bytes_ == 0) return;
   // If this truncation fails, the space remains reserved. run.json may then not be replaced on a full disk.
-  if (reserved_bytes_ > 0) [[maybe_unused]]
-    const int released = ftruncate(descriptor_, whole_bytes_);
+  [[maybe_unused]] const int released = ftruncate(descriptor_, whole_bytes_);
   reserved_bytes_ = 0;
 }
 

@@ -243,10 +243,13 @@ Plant& SimulatedBoard::plant(std::size_t channel) {
   return parts_->plants.at(channel);
 }
 
+void SimulatedBoard::catch_up() noexcept {
+  if (parts_->started) parts_->act_until(parts_->clock.now());
+}
+
 void SimulatedBoard::happen(const SimulatedEvent& event) noexcept {
-  Parts& parts = *parts_;
-  if (parts.started) parts.act_until(parts.clock.now());
-  parts.happen(event);
+  catch_up();
+  parts_->happen(event);
 }
 
 }  // namespace softgrip::simulation

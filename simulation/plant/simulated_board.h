@@ -91,6 +91,8 @@ class SimulatedBoard final : public drivers::Board {
   /// Returns the simulated finger of a channel, so that tests and scripts can change the finger. Only the
   /// thread that calls exchange() may use the finger.
   [[nodiscard]] Plant& plant(std::size_t channel);
+  /// Advances the fingers to the present time of the clock.
+  void catch_up() noexcept;
   /// Applies an event at the present time.
   void happen(const SimulatedEvent& event) noexcept;
 

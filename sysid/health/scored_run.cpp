@@ -24,11 +24,6 @@ using Json = nlohmann::ordered_json;
 
 namespace fs = std::filesystem;
 
-/// Returns the name of the folder or file to which a path leads.
-std::string name_of(const std::string& path) {
-  return fs::path(plain_path(path)).filename().string();
-}
-
 bool is_run(const fs::path& path) {
   std::error_code ignored;
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
@@ -54,7 +49,7 @@ std::string skip_reason(const Recording& recording) {
 
 void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores) {
   document::Problems problems;
-  const std::string name = name_of(path);
+  const std::string name = name_in_path(path);
   // The log of a whole day can be large, so run.json is read first.
   if (const std::string reason = skip_reason(read_recording_data(path)); !reason.empty()) {
     scores.skipped.push_back({name, reason});
@@ -177,15 +172,16 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
   for (const ScoredRun& run : known) start_of[run.run] = run.started_at;
   RunScores scores;
   const auto skip_namesake = [&](const std::string& path) {
-    scores.skipped.push_back({name_of(path), "another recording has the same name: rename " + path});
+    scores.skipped.push_back({name_in_path(path), "another recording has the same name: rename " + path});
   };
   std::vector<std::string> unread;
   for (const std::string& path : paths) {
-    const auto earlier = start_of.find(name_of(path));
-    const std::string start = earlier == start_of.end() ? std::string() : started_at_of(path);
+    const auto earlier = start_of.find(name_in_path(path));
+    const std::string start =
+        earlier == start_of.end() ? std::string() : read_recording_data(path).started_at;
     if (!start.empty() && !earlier->second.empty() && start != earlier->second)
       skip_namesake(path);
-    else if (!done.contains(name_of(path)))
+    else if (!done.contains(name_in_path(path)))
       unread.push_back(path);
   }
   std::map<std::string, std::string> path_of;
@@ -193,7 +189,7 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     end_if_cancelled();
     if (on_recording) on_recording(i + 1, unread.size());
     const std::string path = plain_path(unread[i]);
-    const auto [first, is_new] = path_of.try_emplace(name_of(unread[i]), path);
+    const auto [first, is_new] = path_of.try_emplace(name_in_path(unread[i]), path);
     if (is_new)
       score_one(unread[i], base_of, scores);
     else if (first->second != path)

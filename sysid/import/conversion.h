@@ -29,8 +29,7 @@ struct ImportedLog {
 /// counted in `account` with a reason. A share of lost rows above refused_share is a problem; a share above
 /// warned_share gives a warning. Columns and options without effect are reported. A log that parse_log()
 /// would refuse is a problem too. The log contains the corrections of parse_log(), and its notes state them.
-/// All problems are added to `problems`, and their texts name the options of
-/// `softgrip import`.
+/// All problems are added to `problems`, and their texts name the options of `softgrip import`.
 [[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);
 

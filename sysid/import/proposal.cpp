@@ -33,11 +33,12 @@ bool has_value(const ForeignTable& table, const Mapping& mapping, std::size_t in
   return table.rows() == 0 || finite_count(without_codes(table, mapping, index)) > 0;
 }
 
-/// Returns true if a role other than the time uses the column.
-bool taken_by_a_value(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
-  return std::any_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
-    return spec.role != Role::time && supplies(mapping[spec.role], table, index);
-  });
+/// Returns the first role other than the time that uses the column.
+std::optional<Role> value_role(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
+  for (const RoleSpec& spec : roles) {
+    if (spec.role != Role::time && supplies(mapping[spec.role], table, index)) return spec.role;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -189,9 +190,9 @@ void choose_codes(const ForeignTable& table, const Mapping& given, Proposal& pro
   for (std::size_t index = 0; index < table.columns.size(); ++index) {
     const TableColumn& column = table.columns[index];
     const bool is_stated = std::ranges::count(given.missing_in, index, column_of) > 0;
-    if (is_stated || !taken_by_a_value(proposal.mapping, table, index)) continue;
-    const bool is_command = supplies(proposal.mapping[Role::command], table, index);
-    for (const double code : codes_for(column, is_command ? Role::command : Role::displacement)) {
+    const auto role = value_role(proposal.mapping, table, index);
+    if (is_stated || !role) continue;
+    for (const double code : codes_for(column, *role)) {
       proposal.mapping.missing_in.push_back({word_of(table, index), code});
       proposal.warnings.push_back(cells_with(column, code) + " with " + shortest(code) +
                                   ", far from all other values, count as missing; to keep these values as "

@@ -66,8 +66,7 @@ Campaign read_campaign(const std::vector<std::string>& paths, document::Problems
       agreed.output_unit_of = path;
     }
     if (folder) {
-      log->name =
-          fs::path(plain_path(given)).filename().string() + (log->channel.empty() ? "" : "/" + log->channel);
+      log->name = name_in_path(given) + (log->channel.empty() ? "" : "/" + log->channel);
     }
     campaign.logs.push_back(std::move(*log));
   }

@@ -81,13 +81,9 @@ tl::expected<Recording, std::string> read_recording(const std::string& path, doc
 
 Recording read_recording_data(const std::string& path) {
   Recording recording;
-  recording.name = fs::path(plain_path(path)).filename().string();
+  recording.name = name_in_path(path);
   if (is_folder(path)) read_story(story_in(path), recording);
   return recording;
-}
-
-std::string started_at_of(const std::string& path) {
-  return read_recording_data(path).started_at;
 }
 
 std::vector<double> numbers_of(const Log& log, const std::string& column) {

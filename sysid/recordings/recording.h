@@ -43,9 +43,6 @@ struct Recording {
 /// run.json is unreadable, only `name` is set.
 [[nodiscard]] Recording read_recording_data(const std::string& path);
 
-/// Returns the start time of a recording in UTC without reading its log; empty if unknown.
-[[nodiscard]] std::string started_at_of(const std::string& path);
-
 /// Returns the numbers in a column that is not part of the log format. A cell without a number gives NaN. The
 /// result is empty if the log does not have this column.
 [[nodiscard]] std::vector<double> numbers_of(const Log& log, const std::string& column);

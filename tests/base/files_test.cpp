@@ -93,6 +93,8 @@ TEST(PlainPath, ASeparatorAtTheEndIsRemoved) {
   EXPECT_EQ(plain_path("./runs/../runs/grip.csv"), "runs/grip.csv");
   EXPECT_EQ(plain_path("grip"), "grip");
   EXPECT_EQ(plain_path("/"), "/");
+  EXPECT_EQ(name_in_path("runs/grip/"), "grip");
+  EXPECT_EQ(name_in_path("./runs/../day/grip.csv"), "grip.csv");
 }
 
 TEST(ScratchFolder, TheDestructorRemovesTheFolderAndAllFiles) {

@@ -18,8 +18,8 @@ class HeartbeatMonitor {
 
   explicit HeartbeatMonitor(Nanoseconds silence) noexcept : silence_(silence) {}
 
-  /// Notes that the heartbeat of a client has changed. Must be called at each change.
-  /// check(now) must be called before, because the heartbeat may end a silence that is not detected yet.
+  /// Notes that the heartbeat of a client has changed. Must be called at each change. check(now) must be
+  /// called before, because the heartbeat may end a silence that is not detected yet.
   void on_change(const std::string& address, Nanoseconds now) { watched_[address] = {now, false}; }
   /// Returns true once per silence of each client, at the first call after the silence has exceeded its
   /// limit. Must be called several times within this limit.
@@ -35,13 +35,12 @@ class HeartbeatMonitor {
   /// Returns the state of a client. The state of a client that is not watched is `silent` if any watched
   /// client is silent, and otherwise `alive` if there is a watched client.
   [[nodiscard]] State state_of(const std::string& address, Nanoseconds now) const {
-    const auto found = watched_.find(address);
-    if (found == watched_.end() && watched_.empty()) return State::not_watched;
-    const bool silent = found != watched_.end()
-                            ? is_silent(found->second, now)
-                            : std::any_of(watched_.begin(), watched_.end(),
-                                          [&](const auto& one) { return is_silent(one.second, now); });
-    return silent ? State::silent : State::alive;
+    if (watched_.empty()) return State::not_watched;
+    const auto silent = [&](const auto& entry) { return is_silent(entry.second, now); };
+    const auto own = watched_.find(address);
+    const bool any =
+        own != watched_.end() ? silent(*own) : std::any_of(watched_.begin(), watched_.end(), silent);
+    return any ? State::silent : State::alive;
   }
   /// Returns true from the detection of a silence until the call of confirm(). A new heartbeat does not
   /// change the result.
