@@ -223,8 +223,10 @@ class RegulatedPressure {
     static const double usual = value_of(outflow(T(usual_kpa)));
     const T begins = outflow(pressure_kpa_);
     if (value_of(begins) <= 0) return T(1e9);  // a chamber at atmospheric pressure has no outflow
-    const T z = step_s * begins / (n_.venting_s * usual);
-    const T halfway = outflow(pressure_kpa_ + (target_kpa - pressure_kpa_) * (z / (2.0 + z)));
+    const T z = step_s * begins / (n_.venting_s * usual), most = n_.full_open_kpa - n_.overlap_kpa;
+    T gap = target_kpa - pressure_kpa_;
+    if (value_of(n_.full_open_kpa) > 0 && value_of(gap) < -value_of(most)) gap = -most;
+    const T halfway = outflow(pressure_kpa_ + gap * (z / (2.0 + z)));
     return n_.venting_s * (usual / (value_of(halfway) > 0 ? halfway : begins));
   }
 
@@ -238,9 +240,10 @@ class RegulatedPressure {
     T gap = target - pressure_kpa_, open_s(0.0), area(0.0);
     const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
     const double sign = way > 0 ? 1 : -1;
-    if (value_of(n_.full_open_kpa) > 0 && std::abs(value_of(gap)) > value_of(most)) {
+    const bool is_limited = value_of(n_.full_open_kpa) > 0;
+    const T rate = sign * most / tau;
+    if (is_limited && std::abs(value_of(gap)) > value_of(most)) {
       // The difference between target and pressure is so large that the port is fully open.
-      const T rate = sign * most / tau;
       open_s = step_s;
       if (sign * (value_of(rate) - value_of(slope)) > 0) {
         const T until_s = (gap - sign * most) / (rate - slope);
@@ -250,7 +253,17 @@ class RegulatedPressure {
       pressure_kpa_ += rate * open_s;
       gap += (slope - rate) * open_s;
     }
-    T lags_s = step_s - open_s;
+    T lags_s = step_s - open_s, opens_again_s(0.0);
+    const bool runs_away = sign * (value_of(slope) - value_of(rate)) > 0;
+    if (is_limited && runs_away && sign * value_of(gap) < value_of(most)) {
+      // The target moves away so fast that the port becomes fully open. It stays so until the end of the
+      // step.
+      const T opens_s = tau * log1p((sign * most - gap) / (slope * tau - sign * most));
+      if (value_of(opens_s) < value_of(lags_s)) {
+        opens_again_s = lags_s - opens_s;
+        lags_s = opens_s;
+      }
+    }
     if (value_of(gap) * value_of(slope) < 0) {
       const T meets_s = tau * log1p(-gap / (slope * tau));
       if (value_of(meets_s) < value_of(lags_s)) lags_s = meets_s;
@@ -260,7 +273,9 @@ class RegulatedPressure {
     const T rise = slope * lags_s, before = pressure_kpa_;
     pressure_kpa_ = before + z * f.phi1 * gap + z * f.phi2 * rise;
     area += (before + z * f.phi2 * gap + z * f.phi3 * rise) * lags_s;
-    const T lasts_s = open_s + lags_s;
+    area += (pressure_kpa_ + rate * opens_again_s * 0.5) * opens_again_s;
+    pressure_kpa_ += rate * opens_again_s;
+    const T lasts_s = open_s + lags_s + opens_again_s;
     mean = value_of(lasts_s) > 0 ? T(area / lasts_s) : pressure_kpa_;
     return lasts_s;
   }

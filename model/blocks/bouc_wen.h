@@ -142,9 +142,11 @@ class BoucWen {
                 not_below(growing_[1] + skew.epsilon_per_kpa, 0.0)};
     shrinking_ = {shrinking_[0] + skew.epsilon_per_kpa, shrinking_[1] - skew.epsilon_per_kpa};
     // After h has saturated in one direction of the pressure, the magnitude of h must decrease when the
-    // pressure reverses.
+    // pressure reverses. At the exact bound, the saturated h would be an unstable equilibrium, from which a
+    // rounding error would grow exponentially.
+    constexpr double below_equilibrium = 1 - 1e-6;
     for (const std::size_t way : {0U, 1U}) {
-      const T bound = growing_[1 - way] * beta_[way] / beta_[1 - way];
+      const T bound = below_equilibrium * (growing_[1 - way] * beta_[way] / beta_[1 - way]);
       if (value_of(shrinking_[way]) > value_of(bound)) shrinking_[way] = bound;
     }
   }

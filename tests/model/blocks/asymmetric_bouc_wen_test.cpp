@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 #include "model/chain.h"
@@ -88,6 +89,23 @@ TEST(AsymmetricBoucWen, StateStaysBoundedForEveryValidSkew) {
           highest = std::fmax(highest, std::fabs(chain.step(1.0, i % 2 == 0 ? 60 : 0)));
         EXPECT_LT(highest, 100) << epsilon << " " << share;
       }
+    }
+  }
+}
+
+// In the limit, the saturated state is an equilibrium. It must not be an unstable one, because rounding
+// errors would grow exponentially.
+TEST(AsymmetricBoucWen, StateStaysBoundedForRandomReversals) {
+  constexpr unsigned seed = 5;
+  for (const double epsilon : {-10.0, -3.0, -1.0, 1.0, 10.0}) {
+    for (const double share : {-0.9, -0.3, -0.05, 0.05, 0.3, 0.9}) {
+      std::mt19937_64 random(seed);
+      std::uniform_real_distribution<double> pressure_kpa(0, 100);
+      Chain<double> chain(skewed({0.35, 0.2, 0.03, 0.03, 1}, 0.01, epsilon, share));
+      double highest = 0;
+      for (int i = 0; i < 2000; ++i)
+        highest = std::fmax(highest, std::fabs(chain.step(0.1, pressure_kpa(random))));
+      EXPECT_LT(highest, 100) << epsilon << " " << share << ", seed " << seed;
     }
   }
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <tuple>
+#include <utility>
 
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/regulated_pressure.h"
@@ -110,6 +112,24 @@ TEST(PressureRegulator, FlowSaturatesAtFullOpening) {
   pass(block, Segment<double>::straight(0, 0, 60));
   pass(block, Segment<double>::straight(0.1, 60, 60));
   EXPECT_NEAR(block.output(), 0.1 * 10 / 0.05, 1e-9);
+}
+
+TEST(PressureRegulator, FlowSaturatesDuringASteepRamp) {
+  // A step of the command in a log is a ramp of one sampling interval.
+  for (const double lasts : {0.002, 0.005, 0.01}) {
+    for (const auto& [from, to] : {std::pair{0.0, 60.0}, {5.0, 60.0}, {60.0, 0.0}, {60.0, 20.0}}) {
+      Block block = make<Block>({0.03, 0.05, 0.5, 0.4, 12});
+      SmallSteps referee(0.03, 0.05, 0.5, 0.4, 12);
+      block.reset(from);
+      referee.pressure_ = from;
+      for (const auto& [begin, end, seconds] : {std::tuple{from, to, lasts}, {to, to, 0.1}}) {
+        pass(block, Segment<double>::straight(seconds, begin, end));
+        referee.go(seconds, begin, end);
+        EXPECT_NEAR(block.output(), referee.pressure_, 0.002 * 60)
+            << "ramp of " << lasts << " s from " << from << " to " << to << " kPa, after " << seconds << " s";
+      }
+    }
+  }
 }
 
 TEST(PressureRegulator, EqualsTheValveLagDuringFilling) {
