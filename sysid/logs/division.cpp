@@ -26,6 +26,23 @@ double length_of(const std::vector<Record>& records) {
   return length_s;
 }
 
+/// Removes the blocks without readings. Their error is unknown, so they must not count as blocks with the
+/// error 0. If no block has readings, all blocks remain, because a division has at least one block.
+void remove_unread_blocks(const std::vector<Record>& records, Division& division) {
+  const auto is_read = [&](const Block& block) {
+    const std::vector<double>& reading_mm = records[block.record].reading_mm;
+    const auto at = [&](std::size_t i) { return reading_mm.begin() + static_cast<std::ptrdiff_t>(i); };
+    return std::any_of(at(block.first), at(block.last), [](double y) { return std::isfinite(y); });
+  };
+  if (std::any_of(division.blocks.begin(), division.blocks.end(), is_read))
+    std::erase_if(division.blocks, [&](const Block& block) { return !is_read(block); });
+}
+
+void alternate_folds(Division& division, std::size_t folds) {
+  division.folds = folds;
+  for (std::size_t b = 0; b < division.blocks.size(); ++b) division.blocks[b].fold = b % folds;
+}
+
 void hide_beside(const std::vector<Record>& records, Division& division) {
   for (Block& block : division.blocks) {
     const std::vector<double>& t = records[block.record].time_s;
@@ -59,8 +76,8 @@ Division divide(const std::vector<Record>& records, double block_s) {
       first = last;
     }
   }
-  division.folds = division.blocks.size() < enough_to_halve ? 4 : 2;
-  for (std::size_t b = 0; b < division.blocks.size(); ++b) division.blocks[b].fold = b % division.folds;
+  remove_unread_blocks(records, division);
+  alternate_folds(division, division.blocks.size() < enough_to_halve ? 4 : 2);
   hide_beside(records, division);
   return division;
 }
@@ -84,7 +101,6 @@ Division thinned_like(Division division, const std::vector<Record>& records,
 Division divide_into_fifths(const std::vector<Record>& records) {
   const double total_s = length_of(records);
   Division division;
-  division.folds = fifths;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const Record& record = records[k];
     std::size_t end = record.size();
@@ -95,10 +111,12 @@ Division divide_into_fifths(const std::vector<Record>& records) {
     for (std::size_t b = 0; b < count; ++b) {
       const std::size_t first = b * end / count, last = (b + 1) * end / count;
       const auto gap = static_cast<std::size_t>(gap_share * static_cast<double>(last - first));
-      division.blocks.push_back({k, first, last, division.blocks.size() % fifths,
-                                 first > gap ? first - gap : 0, std::min(last + gap, record.size())});
+      division.blocks.push_back(
+          {k, first, last, 0, first > gap ? first - gap : 0, std::min(last + gap, record.size())});
     }
   }
+  remove_unread_blocks(records, division);
+  alternate_folds(division, fifths);
   return division;
 }
 
@@ -112,6 +130,7 @@ Division divide_into_halves(const std::vector<Record>& records) {
                                  begin + (b + 1) * length / blocks_of_a_half, 0, begin, size});
     }
   }
+  remove_unread_blocks(records, division);
   return division;
 }
 

@@ -25,7 +25,7 @@ struct Block {
 };
 
 /// A division of the readings of all records into held-out blocks. Adjacent blocks belong to different folds
-/// if there are several folds.
+/// if there are several folds. Each block contains at least one reading, unless no block does.
 struct Division {
   std::vector<Block> blocks;
   std::size_t folds = 2;

@@ -71,6 +71,26 @@ TEST(Division, NeighbouringBlocksAreNotHeldOutTogether) {
   }
 }
 
+TEST(Division, HasNoBlockWithoutReadings) {
+  std::vector<Record> records{of_length(40, 50), of_length(40, 50)};
+  hide_readings(records[1], records[1].size() / 5, records[1].size() - 1);
+  for (const Division& division :
+       {divide(records, 8), divide_into_fifths(records), divide_into_halves(records)}) {
+    EXPECT_EQ(std::count_if(division.blocks.begin(), division.blocks.end(),
+                            [](const Block& block) { return block.record == 1; }),
+              division.folds == 1 ? 1 : 2)
+        << "the first fifth and the last sample are read";
+    for (std::size_t b = 0; b < division.blocks.size(); ++b)
+      EXPECT_EQ(division.blocks[b].fold, b % division.folds);
+  }
+}
+
+TEST(Division, HasBlocksIfThereAreNoReadings) {
+  std::vector<Record> records{of_length(40, 50)};
+  hide_readings(records[0], 0, records[0].size());
+  EXPECT_FALSE(divide(records, 8).blocks.empty());
+}
+
 TEST(Division, HalvesFitTheFirstAndTestTheSecondHalf) {
   const std::vector<Record> records{of_length(33, 100), of_length(20, 60)};
   const Division halves = divide_into_halves(records);
