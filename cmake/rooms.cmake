@@ -80,13 +80,13 @@ softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Ei
 softgrip_room(sysid/identification
   USES base base/result document model model/file sysid/limits sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
+softgrip_room(sysid/evidence USES base sysid/limits sysid/logs sysid/fitting)
 softgrip_room(sysid/structure
-  USES base model sysid/limits sysid/logs sysid/fitting sysid/identification
+  USES base model sysid/limits sysid/logs sysid/fitting sysid/identification sysid/evidence
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/residual USES base sysid/limits sysid/logs LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/instrument
   USES base model sysid/logs sysid/pages sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual)
-softgrip_room(sysid/evidence USES base sysid/limits sysid/logs sysid/fitting)
 softgrip_room(sysid/diagnosis/causes
   USES model sysid/logs sysid/fitting sysid/evidence sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search

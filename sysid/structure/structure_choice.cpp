@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "sysid/evidence/comparison.h"
 #include "sysid/fitting/held_out.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/trajectory.h"
@@ -73,23 +74,18 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// Returns the index of the first trial that may be chosen and whose loss exceeds the lowest loss by at most
-/// one standard error. The comparison starts at the index `first`.
-std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
-  const std::size_t best = best_of(trials);
-  for (std::size_t i = first; i < best; ++i) {
-    if (!may_be_chosen(trials[i])) continue;
-    const LossDifference behind = loss_difference(trials[i].block_losses_mm2, trials[best].block_losses_mm2);
-    if (behind.mean_mm2 <= behind.standard_error_mm2) return i;
-  }
-  return best;
+/// Returns true if the held-out losses `better` are significantly lower than the losses `worse`
+/// (sysid/evidence/comparison.h). All blocks have the same weight, regardless of their number of readings.
+bool is_better_than(const std::vector<double>& better, const std::vector<double>& worse) {
+  constexpr std::uint64_t seed = 1;
+  return is_better(compare({worse, better, std::vector<double>(worse.size(), 1)}, 0, seed));
 }
 
 /// If the loss of a trial is significantly lower than the loss of the selected trial, adds it to the choice
 /// and selects it. Returns true if the trial is selected.
 bool offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
-      !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
+      !is_better_than(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
     return false;
   choice.chosen = choice.trials.size();
   choice.trials.push_back(std::move(trial));
@@ -163,7 +159,7 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
     // complete fit is made.
     const StructureTrial still = choice.trials[choice.chosen];
     const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);
-    if (is_clearly_less(screening.block_losses_mm2, still.block_losses_mm2))
+    if (is_better_than(screening.block_losses_mm2, still.block_losses_mm2))
       offer(judge.judge_resonant(still, ResonanceFit::complete), choice);
   }
 }
@@ -187,7 +183,7 @@ std::vector<StructureTrial> with_modes(const StructureJudge& judge, StructureTri
                                                alone ? heldout_of_chosen_mm : reduced * form.rmse_mm);
     bool is_lower = alone && extended.rmse_mm < reduced * form.rmse_mm;
     if (is_evaluated(extended) && is_evaluated(form)) {
-      is_lower = is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2) &&
+      is_lower = is_better_than(extended.block_losses_mm2, form.block_losses_mm2) &&
                  (alone || extended.heldout_rmse_mm < reduced * form.heldout_rmse_mm);
     }
     if (is_evaluated(extended) && (alone || is_lower)) found.push_back(extended);
@@ -245,6 +241,16 @@ FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
 
 }  // namespace
 
+std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials) {
+  const std::size_t best = best_of(trials);
+  for (std::size_t i = 0; i < best; ++i) {
+    if (may_be_chosen(trials[i]) &&
+        !is_better_than(trials[best].block_losses_mm2, trials[i].block_losses_mm2))
+      return i;
+  }
+  return best;
+}
+
 std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                         const StructureChoiceOptions& options) {
   const auto is_open = [](const Record& r) { return r.start == Start::automatic && r.start_unknown; };
@@ -259,7 +265,9 @@ std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                     .judge(structure, ridges[first_ridge])
                     .block_losses_mm2;
   });
-  return is_clearly_less(losses[1], losses[0]) ? records : resting;
+  // An unknown initial state changes the error of one block most, namely of the first one. A single block
+  // must not decide, so the ratios of the losses are compared.
+  return mean_log_ratio(losses[0], losses[1], options.seed).lower > 0 ? records : resting;
 }
 
 StructureChoice choose_structure(const std::vector<Record>& records, const StructureChoiceOptions& options) {
@@ -291,10 +299,6 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   });
   choice.candidates = choice.trials.size();
   choice.chosen = simplest_of_the_best(choice.trials);
-  const StructureTrial& simplest = choice.trials[choice.chosen];
-  if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
-                                          options.published_yields_below * simplest.heldout_rmse_mm)
-    choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
   if (!choice.trials[choice.chosen].structure.published) offer_extensions(judge, options, choice);
   if (options.dynamics) offer_linear_modes(judge, options, choice);
   return choice;

@@ -19,11 +19,6 @@ namespace softgrip::sysid {
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
-  /// Limit below which the published element is rejected. It applies to the held-out error of the best other
-  /// structure, divided by that of the published element. The rule applies even if the difference is not
-  /// significant. If all structures lack a cause, one block may dominate the standard error and make the
-  /// difference insignificant. 0: the rule is not applied.
-  double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< input of the structures; with Drive::measured, the structures have no
                                  ///< dead time
@@ -79,13 +74,18 @@ struct WithoutIngredient {
 [[nodiscard]] std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                                       const StructureChoiceOptions& options);
 
+/// Returns the index of the first trial that may be chosen and whose loss is not significantly higher than
+/// the lowest loss (sysid/evidence/comparison.h; each block has the same weight). The significance does not
+/// depend on the size of the largest difference. One block in which a structure fails therefore cannot hide
+/// that the structure is worse.
+/// @param trials  trials with the same blocks; the simplest structure comes first. At least one trial.
+[[nodiscard]] std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials);
+
 /// Chooses a structure in three steps. First, the ridge parameter is chosen with the richest structure. Then
-/// the simplest structure is chosen whose held-out loss is within one standard error of the lowest one
-/// (Breiman et al. 1984, section 3.4.3). The standard error is that of the paired difference over blocks.
-/// Finally, extensions are tried: with Drive::command, a regulator instead of the lags; with Drive::command
-/// and `dynamics`, a second lag and a rate limit; with `dynamics`, a resonance and linear modes. If the
-/// published element has been chosen, only linear modes are tried. An extension is chosen if its held-out
-/// loss is significantly lower.
+/// simplest_of_the_best() chooses a candidate. Finally, extensions are tried: with Drive::command, a
+/// regulator instead of the lags; with Drive::command and `dynamics`, a second lag and a rate limit; with
+/// `dynamics`, a resonance and linear modes. If the published element has been chosen, only linear modes are
+/// tried. An extension is chosen if its held-out loss is significantly lower.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 

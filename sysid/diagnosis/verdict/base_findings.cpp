@@ -209,7 +209,6 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.seed = question.seed;
   options.threads = question.threads;
   options.progress = question.progress;
-  options.published_yields_below = 1 - limits::equal_error_share;
   options.starts = limits::repeated_starts;
   // An effect that no structure contains may increase the errors of all structures. Therefore the search is
   // repeated with modified readings: first without the effects of the causes that were found, and then

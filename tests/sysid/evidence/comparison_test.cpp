@@ -33,6 +33,16 @@ TEST(Comparison, OnlyAClearLossReductionIsBetter) {
   EXPECT_FALSE(is_better(compare(losses(-1, 0.1, 20, 1), 0, 1)));
 }
 
+TEST(Comparison, AFailureInOneBlockIsALossReduction) {
+  // The standard error of the mean difference is as large as the mean, because one block determines both.
+  const PairedLosses failing{
+      .worse = {11, 11, 10, 11, 500}, .better = {10, 10, 10, 10, 10}, .rows = {10, 10, 10, 10, 10}};
+  EXPECT_TRUE(is_better(compare(failing, 0, 1)));
+  const PairedLosses balanced{
+      .worse = {11, 1, 11, 1, 500}, .better = {10, 10, 10, 500, 10}, .rows = {10, 10, 10, 10, 10}};
+  EXPECT_FALSE(is_better(compare(balanced, 0, 1))) << "each model fails in one block";
+}
+
 TEST(Comparison, EqualLossesGiveAShareOfZero) {
   EXPECT_DOUBLE_EQ(compare(losses(0, 0, 20, 1), 0, 1).share, 0);
 }
