@@ -136,7 +136,9 @@ double remove_unfamiliar_commands(const Base& base, const std::vector<Record>& l
   return all > 0 ? removed / all : 0;
 }
 
-Disagreement added_disagreement(const Base& base, const std::vector<Record>& later) {
+Disagreement added_disagreement(const Base& base, std::vector<Record> later) {
+  // An estimated initial state depends on the readings. A drift would then look like an unlike input.
+  for (Record& record : later) record.start = Start::rest;
   const std::vector<std::vector<double>> own = residuals_of(base, later);
   Disagreement most;
   for (const HealthyModel& other : base.alternatives) {

@@ -88,7 +88,7 @@ class RunSpread {
 /// disagreement is as uncertain as the error of a single run. Therefore the result is multiplied by the ratio
 /// of run_to_run_factor() for one run to its value for the healthy runs.
 /// @param later  later records at the full sampling rate.
-[[nodiscard]] Disagreement added_disagreement(const Base& base, const std::vector<Record>& later);
+[[nodiscard]] Disagreement added_disagreement(const Base& base, std::vector<Record> later);
 
 /// Sets those residuals of a pressure to NaN that follow an unfamiliar command, up to the longest memory of
 /// the baseline model. A command is unfamiliar if its distance from the predicted pressure exceeds the

@@ -42,6 +42,18 @@ TEST_F(HealthyRuns, DelayExceedsTheSpreadOfHealthyRuns) {
   EXPECT_TRUE(spread.is_exceeded(later.plain_rms({}), per_bin(later, later.white({}))));
 }
 
+TEST(AddedDisagreement, DoesNotDependOnTheReadings) {
+  const Base base =
+      fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
+  ASSERT_FALSE(base.alternatives.empty());
+  std::vector<Record> later = make_records({test::log_of({}, 7)}, {});
+  const Disagreement before = added_disagreement(base, later);
+  for (std::size_t i = 0; i < later[0].size(); ++i) later[0].reading_mm[i] += 0.1 * later[0].time_s[i];
+  const Disagreement drifting = added_disagreement(base, later);
+  EXPECT_NEAR(drifting.mean_square, before.mean_square, 1e-9);
+  EXPECT_NEAR(drifting.loss, before.loss, 1e-6);
+}
+
 TEST(RunSpreadOfSixRuns, AdmitsAChangeIfOneErrorExceedsItsBoundOrBothTheHealthyErrors) {
   std::vector<Log> logs;
   for (const unsigned seed : {1U, 11U, 21U}) {
