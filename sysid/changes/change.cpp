@@ -13,6 +13,7 @@
 #include "sysid/changes/base.h"
 #include "sysid/changes/change_judge.h"
 #include "sysid/changes/change_warnings.h"
+#include "sysid/changes/orientation.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/sampling.h"
 #include "sysid/diagnosis/residual/closed_loop.h"
@@ -169,35 +170,9 @@ ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
   return alternatives ? ChangeVerdict::ambiguous : ChangeVerdict::cause_found;
 }
 
-}  // namespace
-
-bool ChangeCause::lists(std::string_view any_id) const {
-  return id == any_id || std::count(alternatives.begin(), alternatives.end(), any_id) > 0;
-}
-
-double share_explained(const JudgedChange& judged) {
-  const double excess_mm2 = square(judged.later_mm) - square(judged.healthy_mm);
-  const double excess_loss = judged.loss_before - 1;
-  const double plain =
-      excess_mm2 > 0 ? (square(judged.later_mm) - square(judged.explained_mm)) / excess_mm2 : 0;
-  const double white = excess_loss > 0 ? (judged.loss_before - judged.loss_left) / excess_loss : 0;
-  return std::clamp(std::max(plain, white), 0.0, 1.0);
-}
-
-std::string_view name_of(ChangeVerdict verdict) {
-  static constexpr auto names = enum_names<ChangeVerdict>({
-      {ChangeVerdict::unchanged, "unchanged"},
-      {ChangeVerdict::cause_found, "cause_found"},
-      {ChangeVerdict::ambiguous, "ambiguous"},
-      {ChangeVerdict::partly_explained, "partly_explained"},
-      {ChangeVerdict::unexplained, "unexplained"},
-  });
-  return names[verdict];
-}
-
-tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,
-                                                           const std::vector<Log>& later,
-                                                           const ChangeOptions& options) {
+tl::expected<ChangeDiagnosis, std::string> diagnose_oriented(const std::vector<Log>& healthy,
+                                                             const std::vector<Log>& later,
+                                                             const ChangeOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   if (const std::string objection = objection_to(healthy, later); !objection.empty())
     return Failure(objection);
@@ -238,6 +213,45 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   for (ChangeCause& cause : diagnosis.partial) cause.output_unit = diagnosis.output_unit;
   for (JudgedChange& judged : diagnosis.readings) judged.output_unit = diagnosis.output_unit;
   diagnosis.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return diagnosis;
+}
+
+}  // namespace
+
+bool ChangeCause::lists(std::string_view any_id) const {
+  return id == any_id || std::count(alternatives.begin(), alternatives.end(), any_id) > 0;
+}
+
+double share_explained(const JudgedChange& judged) {
+  const double excess_mm2 = square(judged.later_mm) - square(judged.healthy_mm);
+  const double excess_loss = judged.loss_before - 1;
+  const double plain =
+      excess_mm2 > 0 ? (square(judged.later_mm) - square(judged.explained_mm)) / excess_mm2 : 0;
+  const double white = excess_loss > 0 ? (judged.loss_before - judged.loss_left) / excess_loss : 0;
+  return std::clamp(std::max(plain, white), 0.0, 1.0);
+}
+
+std::string_view name_of(ChangeVerdict verdict) {
+  static constexpr auto names = enum_names<ChangeVerdict>({
+      {ChangeVerdict::unchanged, "unchanged"},
+      {ChangeVerdict::cause_found, "cause_found"},
+      {ChangeVerdict::ambiguous, "ambiguous"},
+      {ChangeVerdict::partly_explained, "partly_explained"},
+      {ChangeVerdict::unexplained, "unexplained"},
+  });
+  return names[verdict];
+}
+
+tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,
+                                                           const std::vector<Log>& later,
+                                                           const ChangeOptions& options) {
+  const Orientation orientation = orientation_of(healthy);
+  if (!orientation.is_mirrored()) return diagnose_oriented(healthy, later, options);
+  ChangeOptions without_given = options;
+  without_given.given.reset();
+  auto diagnosis =
+      diagnose_oriented(oriented(healthy, orientation), oriented(later, orientation), without_given);
+  if (diagnosis) diagnosis->warnings.insert(diagnosis->warnings.begin(), sentence_of(orientation));
   return diagnosis;
 }
 

@@ -1,0 +1,57 @@
+#include "sysid/changes/orientation.h"
+
+#include <algorithm>
+
+#include "base/statistics.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// A correlation with a magnitude above this value counts as significant.
+constexpr double clear_correlation = 0.5;
+
+void mirror(std::vector<double>& column, double factor) {
+  for (double& value : column) value *= factor;
+}
+
+}  // namespace
+
+Orientation orientation_of(const std::vector<Log>& logs) {
+  double lowest_kpa = 0, highest_kpa = 0;
+  for (const Log& log : logs) {
+    for (const double kpa : log.pressure_command_kpa) {
+      lowest_kpa = std::min(lowest_kpa, kpa);
+      highest_kpa = std::max(highest_kpa, kpa);
+    }
+  }
+  Orientation orientation;
+  orientation.pressure = -lowest_kpa > highest_kpa ? -1 : 1;
+  PairSums sums;
+  for (const Log& log : logs) {
+    for (std::size_t i = 0; i < log.size(); ++i)
+      sums.add(orientation.pressure * log.pressure_command_kpa[i], log.displacement_mm[i]);
+  }
+  orientation.reading = sums.correlation() < -clear_correlation ? -1 : 1;
+  return orientation;
+}
+
+std::vector<Log> oriented(std::vector<Log> logs, const Orientation& orientation) {
+  for (Log& log : logs) {
+    mirror(log.pressure_command_kpa, orientation.pressure);
+    mirror(log.pressure_kpa, orientation.pressure);
+    mirror(log.displacement_mm, orientation.reading);
+  }
+  return logs;
+}
+
+std::string sentence_of(const Orientation& orientation) {
+  if (!orientation.is_mirrored()) return {};
+  const std::string columns = orientation.pressure > 0  ? "the readings"
+                              : orientation.reading > 0 ? "the pressures"
+                                                        : "the pressures and the readings";
+  return "The causes act on positive pressures and on readings that rise with the pressure, so " + columns +
+         " are multiplied by -1 for this diagnosis. All sizes, positions and charts refer to the multiplied "
+         "values, and the given model is not used";
+}
+
+}  // namespace softgrip::sysid
