@@ -56,6 +56,7 @@ struct ChangeCause {
   /// cause, divided by the variance of the noise.
   double gain = 0;
   std::optional<Interval> gain_interval;  ///< 95 % interval of `gain`; empty for a cause without a fit
+  double loss_without = 0;  ///< whitened mean square without the cause; 0 for a cause without a fit
   std::vector<std::string> alternatives;  ///< ids of other causes that explain the later readings as well as
                                           ///< this cause
 

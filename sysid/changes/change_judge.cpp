@@ -268,7 +268,8 @@ class Judge {
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
-    const double excess = per_bin(readings, search.without) - 1;
+    cause.loss_without = per_bin(readings, search.without);
+    const double excess = cause.loss_without - 1;
     cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
     return cause;
   }

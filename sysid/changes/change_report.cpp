@@ -19,6 +19,18 @@ Value interval_value(const std::optional<Interval>& interval) {
   return interval ? Value(Value::List{interval->lower, interval->upper}) : Value();
 }
 
+/// Returns the reduction of the whitened RMS error by a cause [%] with its interval. Both are null for a
+/// cause without a fit.
+Fields error_reduction(const ChangeCause& cause) {
+  const auto percent = [&](double gain) {
+    return 100 * (1 - std::sqrt(std::max(0.0, 1 - gain / cause.loss_without)));
+  };
+  if (!(cause.loss_without > 0)) return {{"value", Value()}, {"ci95", Value()}};
+  std::optional<Interval> interval = cause.gain_interval;
+  if (interval) *interval = {percent(interval->lower), percent(interval->upper)};
+  return {{"value", percent(cause.gain)}, {"ci95", interval_value(interval)}};
+}
+
 Fields fields_of_cause(const ChangeCause& cause) {
   Fields parameters;
   for (std::size_t i = 0; i < cause.fitted.numbers.size(); ++i) {
@@ -46,6 +58,8 @@ Fields fields_of_cause(const ChangeCause& cause) {
           {"unit", unit},
           {"share_percent", "share of the error [%]", decimals(cause.share_percent, 0)},
           {"gain", Fields{{"value", cause.gain}, {"ci95", interval_value(cause.gain_interval)}}},
+          {"heldout_error_reduction_percent", error_reduction(cause)},
+          {"heldout_gain_percent", error_reduction(cause)},  // this key is deprecated
           {"next_steps", Value::List{steps[0], steps[1]}},
           {"", "alternatives", cause.alternatives}};
 }

@@ -81,6 +81,8 @@ TEST(Change, RarelyUpdatedReadingIsNamedSampling) {
   ASSERT_EQ(d.causes.size(), 1U) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "sampling");
   EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
+  const auto reduction = result::json_of(fields_of(d))["causes"][0]["heldout_error_reduction_percent"];
+  EXPECT_TRUE(reduction.at("value").is_null()) << "the cause was found without a fit";
 }
 
 /// Adds errors in every period of 5 s. The error alternates during the first 3 s. During the last 2 s, there
@@ -449,6 +451,12 @@ void expect_keys_of_every_diagnosis(const ChangeDiagnosis& d) {
   EXPECT_FALSE(json["structure"].is_null());
   EXPECT_GT(json["error_reduction_percent"]["value"], 0);
   EXPECT_EQ(json["error_reduction_percent"], json["gain_percent"]);
+  const auto& reduction = json["causes"][0]["heldout_error_reduction_percent"];
+  EXPECT_GT(reduction["value"], 0);
+  EXPECT_LT(reduction["value"], 100);
+  EXPECT_LE(reduction["ci95"][0], reduction["value"]);
+  EXPECT_GE(reduction["ci95"][1], reduction["value"]);
+  EXPECT_EQ(reduction, json["causes"][0]["heldout_gain_percent"]);
 }
 
 TEST(ChangeResult, WithOneHealthyLogTheSentenceStatesWhichErrorWouldBeReported) {
