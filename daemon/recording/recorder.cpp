@@ -65,7 +65,7 @@ struct Recorder::Recording {
 
 Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& provenance,
                    std::string only_folder, Nanoseconds origin, SharedState& shared, EventLog& events,
-                   const SequenceStore& sequence_store)
+                   SequenceStore& sequence_store)
     : settings_(settings),
       provenance_(provenance),
       only_folder_(std::move(only_folder)),
@@ -111,6 +111,8 @@ void Recorder::take_events(Nanoseconds until) {
 void Recorder::take(const Record& row) {
   take_events(row.at);
   now_ = row.at;
+  // The end of the sequence is read from the state and not from an event, because events can be lost.
+  if (!control::may_rise(row.state)) running_ = {};
   const bool moves = control::moves(row.state);
   if (recording_ && !always_ && !moves && row.at - recording_->last_motion > tail) end("complete");
   if (!recording_ && may_begin(row.at) && (always_ || moves)) begin(row.at, nullptr);
@@ -122,9 +124,14 @@ void Recorder::take(const Record& row) {
 void Recorder::take(const StampedEvent& event) {
   now_ = event.at;
   const bool starts = event.event.kind == Kind::sequence_started;
+  if (starts) {
+    running_ = {event.event.request, sequence_store_.find(event.event.request)};
+    sequence_store_.start_taken(SequenceStore::Reader::recorder, event.event.request);
+  }
   // A sequence that starts within the settling time after the last motion ends the present recording and
   // begins a new one.
-  if (recording_ && !always_ && starts && recording_->story.sequence != nullptr) end("complete");
+  if (recording_ && !always_ && starts && recording_->story.request != 0) end("complete");
+  if (starts && !recording_ && event.at < blocked_) report_unrecorded_start();
   const bool opens = always_ || starts || event.event.kind == Kind::fault_latched;
   if (!recording_ && may_begin(event.at) && opens) begin(event.at, &event.event);
   if (recording_) return write(event);
@@ -134,6 +141,17 @@ void Recorder::take(const StampedEvent& event) {
 
 bool Recorder::may_begin(Nanoseconds at) const {
   return at >= blocked_ && (always_ || settings_.mode != rig::RecorderSettings::Mode::off);
+}
+
+/// Reports that the running sequence has started in the pause after a disk error.
+void Recorder::report_unrecorded_start() {
+  const std::string name = running_.sequence ? fmt::format(" '{}'", running_.sequence->prepared.name) : "";
+  tell("recording_skipped", Severity::warning,
+       only_folder_.empty()
+           ? fmt::format("The start of the sequence{} is not recorded, because after a disk error nothing is "
+                         "recorded for {} s.",
+                         name, retry_pause / ns_per_s)
+           : fmt::format("The sequence{} is not recorded, because a disk error ended the recording.", name));
 }
 
 void Recorder::forget_before(Nanoseconds at) {
@@ -168,6 +186,11 @@ void Recorder::begin(Nanoseconds at, const control::Event* event) {
     for (const Record& row : past_rows_) write(row);
     for (const StampedEvent& past : past_events_) write(past);
   }
+  // A recording that begins in the middle of a sequence, after a disk error, states this sequence.
+  if (now.story.request == 0) {
+    now.story.sequence = running_.sequence;
+    now.story.request = running_.request;
+  }
   past_rows_.clear();
   past_events_.clear();
   write_json();
@@ -179,11 +202,10 @@ std::string Recorder::folder_for(Nanoseconds at, const control::Event* event) co
   std::string name =
       provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(wall_time(at));
   for (char& c : name) c = c == ':' ? '-' : c;
-  if (event != nullptr && event->kind == Kind::sequence_started) {
-    const auto sequence = sequence_store_.find(event->request);
-    if (sequence) name += "_" + file_name_of(sequence->prepared.name);
-  } else if (event != nullptr && event->kind == Kind::fault_latched && !always_) {
+  if (event != nullptr && event->kind == Kind::fault_latched && !always_) {
     name += "_fault";
+  } else if (running_.sequence) {
+    name += "_" + file_name_of(running_.sequence->prepared.name);
   }
   const std::string first = settings_.directory + "/" + name;
   std::string path = first;
@@ -204,7 +226,8 @@ void Recorder::write(const Record& row) {
 void Recorder::write(const StampedEvent& event) {
   Recording& now = *recording_;
   if (event.event.kind == Kind::sequence_started) {
-    now.story.sequence = sequence_store_.find(event.event.request);
+    now.story.sequence = event.event.request == running_.request ? running_.sequence
+                                                                 : sequence_store_.find(event.event.request);
     now.story.request = event.event.request;
   }
   if (now.story.events.size() == events_per_file) {

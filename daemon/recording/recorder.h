@@ -32,14 +32,15 @@ struct RecorderStatus {
 /// data. In the mode `sequences`, a recording starts with a sequence and ends 0.5 s after the last motion of
 /// the sequence. A fault outside a sequence gets its own recording, which starts history_s before the fault.
 /// A disk error is reported as an event and ends the recording. After a pause, the recorder tries to begin a
-/// new recording. All functions except status() must be called from the same thread.
+/// new recording. Each sequence that starts in the pause is reported as an event. All functions except
+/// status() must be called from the same thread.
 class Recorder {
  public:
   /// If `only_folder` is not empty, the recorder ignores the recording mode and records all data from start
   /// to stop in this folder. `origin` is time 0 of the event log. All referenced objects must exist longer
   /// than the recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
-           Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
+           Nanoseconds origin, SharedState& shared, EventLog& events, SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   Recorder(Recorder&&) = delete;
@@ -57,6 +58,11 @@ class Recorder {
 
  private:
   struct Recording;
+  /// A sequence that was started.
+  struct StartedSequence {
+    std::uint32_t request = 0;  ///< id of the request that started the sequence; 0: there is no sequence
+    std::shared_ptr<const LoadedSequence> sequence;  ///< nullptr if the sequence is no longer stored
+  };
 
   /// Takes the events of the loop up to and including the time `until`.
   void take_events(Nanoseconds until);
@@ -65,6 +71,7 @@ class Recorder {
   void write(const Record& row);
   void write(const StampedEvent& event);
   [[nodiscard]] bool may_begin(Nanoseconds at) const;
+  void report_unrecorded_start();
   void forget_before(Nanoseconds at);
   /// Begins a recording at the time `at`. `event` is the first event of the recording; nullptr if the
   /// recording begins with a row.
@@ -88,11 +95,12 @@ class Recorder {
   std::optional<StampedEvent> waiting_;  // event that is newer than the newest row, and therefore waits
   std::uint64_t events_lost_ = 0;        // number of lost events that were already reported
   EventLog& events_;
-  const SequenceStore& sequence_store_;
+  SequenceStore& sequence_store_;
   CsvRows rows_;
   std::vector<Record> batch_;
   std::deque<Record> past_rows_;  // rows before the next recording, kept while no recording is active
   std::deque<StampedEvent> past_events_;
+  StartedSequence running_;  // sequence that runs at the time now_
   std::unique_ptr<Recording> recording_;
   std::uint32_t recordings_ = 0;
   Nanoseconds now_ = 0;      // time of the newest row or event

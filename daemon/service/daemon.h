@@ -46,6 +46,9 @@ struct DaemonOptions {
       open_gpio;
   /// Called for each event, in the order of the events and in the thread that called run().
   std::function<void(const EventEntry&)> on_event;
+  /// Called in the thread that called run(), before the process ends without the end of run(), because one of
+  /// its threads hangs. Must write the output of on_event and must return within 1 s.
+  std::function<void()> before_sudden_end;
   /// Called once with the start-up report, after the set-up and before any motion, in the thread that called
   /// run().
   std::function<void(const std::string&)> on_start;
@@ -119,8 +122,9 @@ struct DaemonParts;  // defined in daemon_parts.h
 class Daemon {
  public:
   /// Creates the daemon. `rig` must be valid. There is an error if record_folder already contains a
-  /// recording. With virtual time, there is also an error in these cases: a real board; digital lines;
-  /// neither a sequence nor a duration; a sequence that holds until a release, without a duration.
+  /// recording, or cannot be created or written. With virtual time, there is also an error in these cases: a
+  /// real board; digital lines; neither a sequence nor a duration; a sequence that holds until a release,
+  /// without a duration.
   [[nodiscard]] static tl::expected<std::unique_ptr<Daemon>, NotCreated> create(rig::RigFile rig,
                                                                                 DaemonOptions options);
   Daemon(const Daemon&) = delete;

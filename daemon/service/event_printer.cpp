@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 #include <sstream>
+#include <thread>
 
 #include <spdlog/async.h>
 #include <spdlog/sinks/base_sink.h>
@@ -125,6 +126,16 @@ void EventPrinter::print(const EventEntry& event) {
 void EventPrinter::print_report(const std::string& report) {
   std::istringstream lines(report);
   for (std::string line; std::getline(lines, line);) logger_->info("{}", line);
+}
+
+void EventPrinter::wait_until_written(std::chrono::milliseconds longest) {
+  if (!writer_) return;
+  // The writer takes this message from its queue after it has written all earlier lines.
+  writer_->post_flush(std::dynamic_pointer_cast<spdlog::async_logger>(logger_),
+                      spdlog::async_overflow_policy::overrun_oldest);
+  const auto give_up = std::chrono::steady_clock::now() + longest;
+  while (writer_->queue_size() > 0 && std::chrono::steady_clock::now() < give_up)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 void EventPrinter::print_end(const Outcome& outcome) {

@@ -1,6 +1,7 @@
 #pragma once
 // Prints the daemon's log on the standard error: events, and the reports at start and end.
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -32,6 +33,8 @@ class EventPrinter {
   /// Prints a report that consists of several lines.
   void print_report(const std::string& report);
   void print_end(const Outcome& outcome);
+  /// Waits until all lines are written, but at most for the time `longest`.
+  void wait_until_written(std::chrono::milliseconds longest);
 
  private:
   struct Flow {

@@ -288,16 +288,24 @@ void RealRun::look_after() {
 /// Ends the process at once. An orderly end is not possible, because the main thread cannot wait for a
 /// blocked thread.
 void RealRun::end_without(const char* hangs, ExitCode code) {
-  parts_.tell("internal_error", Severity::error,
-              fmt::format("{}; the process ends without waiting for this thread.", hangs));
-  parts_.deliver_events();
+  parts_.tell(
+      "internal_error", Severity::error,
+      fmt::format("{}; the process ends without waiting for this thread. The board {} the safe outputs.",
+                  hangs, parts_.shared.safe_state_confirmed.load() ? "confirmed" : "did NOT confirm"));
+  guarded([this] {
+    parts_.deliver_events();
+    if (parts_.options.before_sudden_end) parts_.options.before_sudden_end();
+  });
   std::_Exit(static_cast<int>(code));
 }
 
 bool RealRun::wait_for(const std::function<bool()>& condition, Nanoseconds longest) {
   const Nanoseconds give_up = parts_.clock.now() + longest;
-  while (!condition() && parts_.clock.now() < give_up)
+  while (!condition() && parts_.clock.now() < give_up) {
+    // If this run ends because a thread hangs, the output must contain the events until then.
+    if (!broken_.load()) guarded([this] { parts_.deliver_events(); });
     parts_.clock.sleep_until(parts_.clock.now() + ns_per_s / 1000);
+  }
   return condition();
 }
 

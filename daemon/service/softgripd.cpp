@@ -1,10 +1,12 @@
 // The program softgripd: reads its command line and runs the daemon.
 
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -100,16 +102,46 @@ ExitCode refuse(const document::Problems& problems) {
   return ExitCode::input_refused;
 }
 
+/// Returns nullopt if the file can be read. Otherwise prints a sentence and returns ExitCode::io.
+std::optional<ExitCode> unreadable(const std::string& path) {
+  const auto file = open_regular(path);
+  if (file) return std::nullopt;
+  complain(fmt::format("cannot read {}: {}", path, file.error()));
+  return ExitCode::io;
+}
+
+/// Returns an exit code if the rig file or the sequence file cannot be read, otherwise nullopt.
+std::optional<ExitCode> any_unreadable(const Arguments& arguments) {
+  if (const auto code = unreadable(arguments.config)) return code;
+  return arguments.sequence.empty() ? std::nullopt : unreadable(arguments.sequence);
+}
+
+/// Returns false and prints a sentence if the file of an option is of another kind than the option requires.
+bool has_kind(const rig::CheckReport& report, const std::string& path, rig::FileKind kind,
+              std::string_view option) {
+  for (const rig::CheckedFile& file : report.files) {
+    // The problems of the report name a file of an unknown kind.
+    if (file.path != path || file.kind == kind || file.kind == rig::FileKind::unknown) continue;
+    complain(fmt::format("{} is a {}, but {} requires a {}", path, rig::name_of(file.kind), option,
+                         rig::name_of(kind)));
+    return false;
+  }
+  return true;
+}
+
 ExitCode check(const Arguments& arguments) {
+  if (const auto code = any_unreadable(arguments)) return *code;
   std::vector<std::string> files{arguments.config};
   if (!arguments.sequence.empty()) files.push_back(arguments.sequence);
   const rig::CheckReport report = rig::check_files(files);
   std::fputs(report.problems.format().c_str(), stderr);
-  if (!report.accepted()) return ExitCode::input_refused;
-  document::Problems ignored;  // these problems are not printed here, because the start-up report also
-                               // contains them
-  const auto rig = rig::load_rig(arguments.config, ignored);
-  if (!rig) return ExitCode::input_refused;
+  const bool has_kinds = has_kind(report, arguments.config, rig::FileKind::rig, "--config") &&
+                         (arguments.sequence.empty() ||
+                          has_kind(report, arguments.sequence, rig::FileKind::sequence, "--sequence"));
+  if (!has_kinds || !report.accepted()) return ExitCode::input_refused;
+  document::Problems problems;  // its warnings are not printed, because the report contains them
+  const auto rig = rig::load_rig(arguments.config, problems);
+  if (!rig) return refuse(problems);
   const MonotonicClock clock;
   fmt::print("{}{}: fit to run\n",
              daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr, "softgripd"),
@@ -118,6 +150,7 @@ ExitCode check(const Arguments& arguments) {
 }
 
 ExitCode say_whether_named(const Arguments& arguments) {
+  if (const auto code = unreadable(arguments.config)) return *code;
   document::Problems problems;
   const auto rig = rig::load_rig(arguments.config, problems);
   if (!rig) return refuse(problems);
@@ -142,6 +175,9 @@ ExitCode safe_outputs(const Arguments& arguments) {
   }
   document::Problems problems;
   const auto kept = daemon::kept_rig(arguments.config);
+  if (!kept) {
+    if (const auto code = unreadable(arguments.config)) return *code;
+  }
   const auto rig = kept ? kept : rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
   daemon::SafeOutputsReport report = daemon::vent_rig(*rig);
@@ -150,6 +186,9 @@ ExitCode safe_outputs(const Arguments& arguments) {
   if (kept && safe) daemon::forget_rig(arguments.config);
   return end_of_safe_outputs(report);
 }
+
+/// Longest wait for the last lines if the process ends because a thread hangs.
+constexpr std::chrono::milliseconds longest_last_output{500};
 
 tl::expected<void, std::string> write_histograms(const std::string& path, const daemon::Daemon& daemon) {
   const daemon::LoopStatistics& loop = daemon.loop_statistics();
@@ -176,6 +215,7 @@ ExitCode run(const Arguments& arguments) {
                          arguments.histograms));
     return ExitCode::usage;
   }
+  if (const auto code = any_unreadable(arguments)) return *code;
   document::Problems problems;
   auto rig = rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
@@ -198,6 +238,7 @@ ExitCode run(const Arguments& arguments) {
   }
   daemon::EventPrinter printer(!arguments.virtual_time);
   options.on_event = [&printer](const daemon::EventEntry& event) { printer.print(event); };
+  options.before_sudden_end = [&printer] { printer.wait_until_written(longest_last_output); };
   options.on_start = [&printer](const std::string& report) { printer.print_report(report); };
 
   auto daemon = daemon::Daemon::create(std::move(*rig), std::move(options));

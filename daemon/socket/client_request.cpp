@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "document/problem.h"
+
 namespace softgrip::daemon {
 
 namespace {
@@ -101,9 +103,7 @@ class Reader {
   /// Reads a name. Control characters are an error, because the name appears in events and logs.
   void name(const char* key, std::string& value) {
     text(key, value);
-    const bool printable = std::none_of(value.begin(), value.end(), [](char letter) {
-      return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
-    });
+    const bool printable = document::shown(value, value.size()) == value;
     if (value.size() > longest_name || !printable) {
       fail(fmt::format("'{}' must have at most {} bytes and no control characters", key, longest_name));
     }
@@ -215,11 +215,7 @@ tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view l
 
   ClientRequest request;
   Reader reader(object);
-  if (object.contains("id")) {
-    std::uint64_t id = 0;
-    reader.whole("id", 0, largest_id, id);
-    request.id = id;
-  }
+  reader.whole("id", 0, largest_id, request.id);
   std::string command;
   reader.text("command", command);
   const auto known = std::find_if(commands.begin(), commands.end(),

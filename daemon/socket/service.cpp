@@ -140,7 +140,7 @@ void Service::process_event(const StampedEvent& stamped) {
   if (event.kind == EventKind::sequence_started) {
     sequence_ = sequence_store_.find(event.request);
     sequence_request_ = event.request;
-    sequence_store_.drop_before(event.request);
+    sequence_store_.start_taken(SequenceStore::Reader::service, event.request);
     std::fill(results_.begin(), results_.end(), control::GripResult::none);
     overall_ = control::GripResult::none;
   }

@@ -2,9 +2,9 @@
 //
 //   STUCK_FOLDER=/tmp/runs STUCK_WHILE=/tmp/stuck LD_PRELOAD=.../libstuck_disk.so softgrip-web ...
 //
-// While the file STUCK_WHILE exists, a call that reads a folder or a regular file below STUCK_FOLDER waits.
-// The first call that waits creates the file STUCK_WHILE.waits. A test then knows that the program waits for
-// the disk.
+// While the file STUCK_WHILE exists, a call that reads or writes a folder or a regular file below
+// STUCK_FOLDER waits. The first call that waits creates the file STUCK_WHILE.waits. A test then knows that
+// the program waits for the disk.
 
 #undef _FORTIFY_SOURCE  // its wrapper would define read() a second time
 
@@ -57,6 +57,12 @@ dirent* readdir(DIR* folder) {
 
 ssize_t read(int descriptor, void* bytes, size_t size) {
   static const auto call = real<ssize_t (*)(int, void*, size_t)>("read");
+  wait_for_the_disk(descriptor);
+  return call(descriptor, bytes, size);
+}
+
+ssize_t write(int descriptor, const void* bytes, size_t size) {
+  static const auto call = real<ssize_t (*)(int, const void*, size_t)>("write");
   wait_for_the_disk(descriptor);
   return call(descriptor, bytes, size);
 }

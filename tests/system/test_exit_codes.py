@@ -97,6 +97,37 @@ class Page(unittest.TestCase):
         self.assertEqual({row.split()[0] for row in exit_codes.table()} & commands, commands)
 
 
+class UnreadableFiles(bench.BenchTest):
+    """Gives every program that reads configuration files a missing file and a folder in place of each file."""
+
+    CALLS = (
+        "{softgripd} --config {file}", "{softgripd} --config {file} --check", "{softgripd} --config {file} --safe-outputs",
+        "{softgripd} --config {file} --device gpiochip0", "{softgripd} --config config/rig.yaml --sequence {file}",
+        "{softgripd} --config config/rig.yaml --sequence {file} --check",
+        "{softgrip} run {file} --rig config/rig.yaml --virtual-time",
+        "{softgrip} run config/sequences/pick_stone.yaml --rig {file} --virtual-time",
+        "{softgrip} simulate --model {file} --input tp1 --out log.csv", "{softgrip} doctor --rig {file}",
+        "{softgrip} calibrate --rig {file} --channel left", "{softgrip} baseline --rig {file} --out base",
+        "{softgrip} tune --model {file} --out pid.yaml",
+        "{rig} --model {file}", f"{{rig}} --model {TWIN} --rig {{file}}", f"{{rig}} --model {TWIN} --faults {{file}}",
+        f"{{rig}} --model {TWIN} --board {{file}}", "{plc} --config {file}", "{plc} --config {file} --check",
+        "{web} --config {file}", "{web} --config {file} --check",
+    )
+
+    def test_a_missing_file_and_a_folder_are_input_errors(self):
+        (self.folder / "folder.yaml").mkdir()
+        tools = bench.BUILD / "tools"
+        for call in self.CALLS:
+            for file in ("absent.yaml", "folder.yaml"):
+                words = call.format(softgripd=bench.SOFTGRIPD, softgrip=bench.SOFTGRIP, rig=bench.SOFTGRIP_RIG,
+                                    plc=tools / "softgrip-plc", web=tools / "softgrip-web", file=file).split()
+                with self.subTest(call, file=file):
+                    done = subprocess.run(words, cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                                          timeout=bench.PATIENCE_S)
+                    self.assertEqual(done.returncode, 4, done.stderr)
+                    self.assertIn(file, done.stderr)
+
+
 class EndingsTest(bench.BenchTest):
     """Runs commands and compares their exit codes with the table."""
 
@@ -268,6 +299,17 @@ class Clients(EndingsTest):
             self.ended(self.runner.run(command.refused), cell)
 
         self.each("refused", check)
+
+    def test_a_sequence_that_is_too_large_to_be_sent_is_refused_with_exit_code_3(self):
+        self.settle()
+        self.write("large.yaml", SHORT + "# a long comment\n" * 6000)
+        for line in ("start large.yaml", "start large.yaml --wait"):
+            done = self.runner.run(line)
+            self.ended(done, 3)
+            self.assertIn(b"large.yaml: the sequence is too large", done.stderr)
+            self.assertIn(b"at most 65536 bytes", done.stderr)
+            self.assertNotIn(b"stopped", done.stderr)
+        self.assertNotIn("sequence_started", {event["kind"] for event in self.softgripd.events(self.since)})
 
     def test_a_signal_ends_a_client_with_the_listed_code(self):
         for number in STOPPING:

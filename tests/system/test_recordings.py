@@ -2,11 +2,15 @@
 recording are changed, the recording must fail."""
 
 import csv
+import json
 import signal
 import time
+import unittest
 
 import bench
 import recording_check
+
+STUCK_DISK = bench.BUILD / "tests" / "system" / "libstuck_disk.so"
 
 
 class Recordings(bench.BenchTest):
@@ -89,6 +93,46 @@ class Recordings(bench.BenchTest):
                                  (go_on_under_a_fault, "faulted is followed by running")):
             with self.subTest(change.__name__):
                 self.assertIn(sentence, self.tampered(recording, change))
+
+
+@unittest.skipUnless(STUCK_DISK.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
+class HangingDisk(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.stuck = self.folder / "stuck"
+        self.board = self.emulator("--object", "stone")
+        self.softgripd = self.idle_daemon(self.rig(self.board.port), {
+            "LD_PRELOAD": str(STUCK_DISK), "STUCK_WHILE": str(self.stuck), "STUCK_FOLDER": str(self.folder / "runs")})
+
+    def wait_for_the_recorder(self):
+        bench.wait_for("a recorder that waits for the disk", (self.folder / "stuck.waits").exists)
+
+    def test_a_disk_that_hangs_at_the_stop_is_reported_with_exit_code_4(self):
+        self.softgripd.start("pick_stone")
+        self.softgripd.wait_for_event("recording_started")
+        self.stuck.touch()
+        self.wait_for_the_recorder()
+        self.assertEqual(self.softgripd.end(), 4)
+        self.stuck.unlink()
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+        errors = self.softgripd.errors()
+        for sentence in ("Stopping: the safe outputs are written", "The thread of the recorder hangs",
+                         "The board confirmed the safe outputs"):
+            self.assertIn(sentence, errors)
+
+    def test_two_starts_while_the_disk_hangs_get_recordings_with_their_own_sequences(self):
+        self.stuck.touch()
+        self.softgripd.start("free_stroke")
+        self.wait_for_the_recorder()
+        self.softgripd.result("stop")
+        self.softgripd.wait_for_state("idle")
+        since = self.softgripd.events()[-1]["id"]
+        self.softgripd.start("pick_stone")
+        self.softgripd.wait_for_event("sequence_started", since=since)
+        self.stuck.unlink()
+        self.assertEqual(self.softgripd.end(), 0)
+        recorded = [json.loads((recording / "run.json").read_text())["sequence"]["name"] for recording in self.recordings()]
+        self.assertEqual(sorted(recorded), ["free_stroke", "pick_stone"])
 
 
 if __name__ == "__main__":

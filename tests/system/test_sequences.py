@@ -1,6 +1,7 @@
 """Tests recipes with arguments, the list of recipes, and the message about a mistyped name, as a user sees them."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -179,9 +180,24 @@ class WithADaemon(bench.BenchTest):
     def test_the_first_reading_causes_no_warning(self):
         self.assertEqual([event["text"] for event in self.softgripd.events() if event["severity"] != "information"], [])
 
+    def test_start_reports_a_local_file_that_cannot_be_read(self):
+        self.assertIn("No such file or directory", self.softgrip("start", "nowhere/pick_stone.yaml", expect=4).stderr)
+        self.assertIn("config/sequences", self.softgrip("start", "config/sequences", expect=4).stderr)
+        os.mkfifo(self.folder / "pipe")
+        self.assertIn("pipe", self.softgrip("start", "pipe", expect=4).stderr)
+        self.assertEqual(self.softgripd.status()["state"], "idle")
+
+    def test_start_sends_the_name_of_a_sequence_although_a_local_folder_has_this_name(self):
+        (self.folder / "pick_stone").mkdir()
+        self.softgrip("start", "pick_stone")
+        self.softgrip("vent")
+
     def test_run_while_a_daemon_runs_writes_nothing_to_the_board(self):
-        done = self.softgrip("run", PICK, "--rig", self.rig_path, expect=4)
+        done = self.softgrip("run", PICK, "--rig", self.rig_path, expect=5)
+        self.assertIn("softgripd runs and controls the board: first stop softgripd", done.stderr)
         self.assertIn("nothing was written to the board", done.stdout)
+        told = self.softgrip("run", PICK, "--rig", self.rig_path, "--json", expect=5).stdout
+        self.assertEqual(json.loads(told)["sequence_end"], "not run")
         self.assertNotIn("NOT confirm", done.stdout)
 
 

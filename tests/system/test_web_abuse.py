@@ -1,7 +1,10 @@
 """Tests softgrip-web with hostile clients. They must get only refusals, and they must not affect the daemon."""
 
 import contextlib
+import gzip
+import pathlib
 import random
+import re
 import socket
 import time
 
@@ -9,6 +12,12 @@ import bench
 import web
 
 SECRET = "what no browser may see"
+# 200 MiB of zeros, compressed by brotli to 317 bytes.
+REPEATED = ("1fffffff00900088c302d0bdffe3ffff1f001200715800baf77ffcffff034002200e0b40f7fe8fffff7f004800c46101e8def"
+            "ff1ffff0f000980382c00ddfb3ffeffff012001108705a07bffc7ffff3f002400e2b00074effff8ffff078004401c1680eefd")
+BROTLI_BOMB = bytes.fromhex("cbffff3f002400e2b14072effff8ffff078004401c1680eefd" + REPEATED * 2 +
+                            "1fffffff00900088c302d0bdffe3ffff1f001200715800baf77ffcffff034002200e0b40f7fe8fffff7f004800c46101"
+                            "e8defff1ffff0f000980382c00ddfb3ffeffff012001108705a07bffc7ffff3f002400e2b00074efff06")
 
 
 class Abuse(web.WebTest):
@@ -82,6 +91,16 @@ class Abuse(web.WebTest):
         self.assertEqual(self.status_of(b"GET / HTTP/1.1\r\nX: " + b"a" * 1_000_000), 431)
         self.assertEqual(self.status_of(b"GET / HTTP/1.1\r\n" + b"X: 1\r\n" * 65 + b"\r\n"), 431)
         self.assertEqual(self.status_of(b"\0" * 100_000), 400)
+        self.assert_well()
+
+    def test_a_compressed_body_is_refused_and_uses_no_memory(self):
+        for encoding, body in (("br", BROTLI_BOMB), ("gzip", gzip.compress(bytes(15 << 20)))):
+            head = (f"POST /api/session HTTP/1.1\r\nHost: localhost:{self.told.port}\r\n"
+                    f"Origin: http://localhost:{self.told.port}\r\nContent-Type: application/json\r\n"
+                    f"Content-Encoding: {encoding}\r\nContent-Length: {len(body)}\r\n\r\n")
+            self.assertEqual(self.status_of(head.encode() + body), 415, encoding)
+        process = pathlib.Path(f"/proc/{self.told.child.pid}/status").read_text()
+        self.assertLess(int(re.search(r"VmHWM:\s+(\d+)", process).group(1)), 60 << 10, "largest memory [KiB]")
         self.assert_well()
 
     def test_a_thousand_connections_do_not_disturb_the_daemon(self):

@@ -37,15 +37,16 @@ class Limits(web.WebTest):
         """Replaces the check of recordings, because the tests of this file record nothing or fill the folder of
         recordings themselves."""
 
-    def send(self, told, path, receive_buffer=None):
-        """Opens a connection that sends a request and does not read the answer."""
+    def send(self, told, path, receive_buffer=None, headers=""):
+        """Opens a connection that sends a request and does not read the answer. `headers` are further lines of the
+        request."""
         client = socket.socket()
         self.addCleanup(client.close)
         client.settimeout(bench.PATIENCE_S)
         if receive_buffer:
             client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
         client.connect(("127.0.0.1", told.port))
-        client.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        client.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n{headers}\r\n".encode())
         return client
 
     def all_of(self, client):
@@ -125,6 +126,20 @@ class Limits(web.WebTest):
         for _ in range(20):
             self.send(told, "/recordings/one/run.csv", receive_buffer=4096)
             self.assert_heard(told)
+
+    def test_clients_that_accept_compressed_files_do_not_delay_a_vent(self):
+        """Measures the processor time of the server, because all requests after a request wait for this time."""
+        told = self.start_web()
+        self.assert_heard(told)
+        before = processor_s(told.child.pid)
+        clients = [self.send(told, "/chart.js", headers="Accept-Encoding: gzip, deflate, br\r\n") for _ in range(4)]
+        status, answer = told.command("vent")
+        self.assertEqual(status, 200, answer)
+        self.assertLess(processor_s(told.child.pid) - before, 0.5, "processor time [s]")
+        for client in clients:
+            head = self.all_of(client).partition(b"\r\n\r\n")[0]
+            self.assertTrue(head.startswith(b"HTTP/1.1 200"), head)
+            self.assertNotIn(b"content-encoding", head.lower())
 
     def test_open_pages_of_viewers_do_not_block_an_operator(self):
         told = self.start_web(access="without_token: look", most=8)

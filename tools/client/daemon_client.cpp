@@ -11,6 +11,7 @@
 
 #include "base/json.h"
 #include "base/net/listener.h"
+#include "tools/client/daemon_text.h"
 
 namespace softgrip::tools {
 namespace {
@@ -61,12 +62,17 @@ std::string problem_list(const Json& problems) {
 
 namespace {
 
+/// Returns the failure that an error of the daemon means. The message may contain a text of another client,
+/// for example its name, so control characters are escaped.
 ClientFailure failure_of(const Json& error) {
   const std::string code = error.value("code", "");
-  const std::string message = error.value("message", "the daemon gave no reason for the refusal");
+  const std::string message =
+      escape_control_characters(error.value("message", "the daemon gave no reason for the refusal"));
   if (code == "sequence_refused") {
-    return {ExitCode::input_refused, message + problem_list(error.value("problems", Json::array()))};
+    return {ExitCode::input_refused,
+            escape_control_characters(message + problem_list(error.value("problems", Json::array())))};
   }
+  if (code == "too_long") return {ExitCode::input_refused, message};
   if (code == "refused") {
     const Json refusal = error.value("refusal", Json::object());
     return {ExitCode::state_refused, "refused (" + refusal.value("code", "?") + "): " + message};

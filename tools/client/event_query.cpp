@@ -75,21 +75,27 @@ bool matches(const EventQuery& query, const Json& event) {
          rank_of(event.value("severity", "")) >= rank_of(query.severity);
 }
 
-tl::expected<std::vector<Json>, ClientFailure> query_events(DaemonClient& client, const EventQuery& query,
-                                                            std::uint64_t& newest) {
-  std::vector<Json> found;
-  newest = query.since.id;
+std::uint64_t missing_before(const Json& next, std::uint64_t last) {
+  const std::uint64_t id = next.value("id", last);
+  return last == 0 || id <= last ? 0 : id - last - 1;
+}
+
+tl::expected<FoundEvents, ClientFailure> query_events(DaemonClient& client, const EventQuery& query) {
+  FoundEvents found;
+  found.newest = query.since.id;
   for (;;) {
-    const auto result = client.call({{"command", "events"}, {"since", newest}, {"limit", page_size}});
+    const auto result = client.call({{"command", "events"}, {"since", found.newest}, {"limit", page_size}});
     if (!result) return tl::unexpected{result.error()};
     const Json events = result->value("events", Json::array());
     for (const Json& event : events) {
-      newest = std::max(newest, event.value("id", newest));
-      if (matches(query, event)) found.push_back(event);
+      found.missing += missing_before(event, found.newest);
+      found.newest = std::max(found.newest, event.value("id", found.newest));
+      if (matches(query, event)) found.events.push_back(event);
     }
     if (events.size() < page_size) break;
   }
-  if (found.size() > query.lines) found.erase(found.begin(), found.end() - static_cast<long>(query.lines));
+  if (found.events.size() > query.lines)
+    found.events.erase(found.events.begin(), found.events.end() - static_cast<long>(query.lines));
   return found;
 }
 

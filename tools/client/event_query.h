@@ -36,9 +36,19 @@ struct EventQuery {
 /// Returns true if the event has the required id, time and severity. This function does not use `lines`.
 [[nodiscard]] bool matches(const EventQuery& query, const nlohmann::ordered_json& event);
 
-/// Returns the events that a query selects, the newest event last. Sets `newest` to the id of the newest
-/// event of the daemon.
-[[nodiscard]] tl::expected<std::vector<nlohmann::ordered_json>, ClientFailure> query_events(
-    DaemonClient& client, const EventQuery& query, std::uint64_t& newest);
+/// Returns the number of events that are missing between the event with the id `last` and the next event. The
+/// ids of the daemon's events are consecutive. If `last` is 0, there is no earlier event, and the result is
+/// 0.
+[[nodiscard]] std::uint64_t missing_before(const nlohmann::ordered_json& next, std::uint64_t last);
+
+struct FoundEvents {
+  std::vector<nlohmann::ordered_json> events;  ///< selected events, the newest event last
+  std::uint64_t newest = 0;                    ///< id of the newest event of the daemon
+  std::uint64_t missing = 0;  ///< number of events after `since.id` that the daemon no longer stores
+};
+
+/// Returns the events that a query selects.
+[[nodiscard]] tl::expected<FoundEvents, ClientFailure> query_events(DaemonClient& client,
+                                                                    const EventQuery& query);
 
 }  // namespace softgrip::tools

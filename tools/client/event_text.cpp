@@ -44,7 +44,7 @@ std::string line_of_event(const nlohmann::ordered_json& event) {
 }
 
 std::string escape_control_characters(std::string_view text) {
-  constexpr std::size_t longest_line = 300;
+  constexpr std::size_t longest_line = 2000;
   std::string shown;
   while (!text.empty()) {
     const std::size_t length = std::min(text.find('\n'), text.size());

@@ -55,8 +55,8 @@ bool confirms_stop(const Json& reply) {
 }
 
 bool refuses_start(const Json& reply) {
-  constexpr std::array<std::string_view, 7> refusals{"refused",   "sequence_refused", "busy",       "owned",
-                                                     "abandoned", "not_allowed",      "bad_request"};
+  constexpr std::array<std::string_view, 8> refusals{
+      "refused", "sequence_refused", "busy", "owned", "abandoned", "not_allowed", "bad_request", "too_long"};
   const std::string code = text_at(object_at(reply, "error"), "code");
   return !accepts(reply) && std::find(refusals.begin(), refusals.end(), code) != refusals.end();
 }

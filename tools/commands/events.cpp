@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -49,12 +50,18 @@ ExitCode run(const EventsOptions& chosen) {
   auto client = DaemonClient::connect(options.daemon.socket);
   if (!client) return fail(client.error().code, client.error().message);
   while (true) {
-    std::uint64_t newest = 0;
-    const auto events = query_events(*client, options.query, newest);
-    if (!events) return fail(events.error().code, events.error().message);
-    for (const Json& event : *events) print(event, options.daemon.json);
+    const auto found = query_events(*client, options.query);
+    if (!found) return fail(found.error().code, found.error().message);
+    if (found->missing > 0) {
+      std::fprintf(stderr,
+                   "softgrip: warning: %s events are missing, because the daemon no longer stores them\n",
+                   std::to_string(found->missing).c_str());
+    }
+    for (const Json& event : found->events) print(event, options.daemon.json);
     if (!options.follow) return ExitCode::done;
-    options.query.since.id = newest;
+    options.query.since.id = found->newest;
+    // The option --lines limits the events of the past. Every new event is printed.
+    options.query.lines = std::numeric_limits<std::size_t>::max();
     std::this_thread::sleep_for(pause);
   }
 }

@@ -1,7 +1,6 @@
 // softgrip start: starts a sequence of the daemon.
 
 #include <poll.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -71,6 +70,7 @@ class FollowedStart {
   [[nodiscard]] tl::expected<ExitCode, Break> follow(std::uint64_t request, std::uint64_t since);
   [[nodiscard]] tl::expected<void, Break> print(const Json& event) const;
   [[nodiscard]] bool stop_confirmed();
+  ExitCode refused(const Json& reply, const ClientFailure& failure) const;
   ExitCode take_back(const Break& reason);
 
   const StartOptions& options_;
@@ -173,17 +173,25 @@ ExitCode FollowedStart::take_back(const Break& reason) {
   return fail(ExitCode::failed, outcome);
 }
 
+/// Reports that the daemon has refused the start. A request is too long only because of the sequence file.
+ExitCode FollowedStart::refused(const Json& reply, const ClientFailure& failure) const {
+  if (text_at(object_at(reply, "error"), "code") != "too_long") return fail(failure.code, failure.message);
+  return fail(failure.code, options_.sequence + ": the sequence is too large to be sent to the daemon: " +
+                                failure.message + " (`socket: max_line_bytes` in the rig file)");
+}
+
 ExitCode FollowedStart::run(Json request, std::uint64_t newest_event) {
   request["start_id"] = id_;
   const auto line = reply(client_, request, longest_planning);
   if (!line) return take_back(line.error());
   const auto accepted = DaemonClient::result_of(*line);
   if (!accepted && !refuses_start(*line)) return take_back({0, accepted.error()});
-  if (!accepted) return fail(accepted.error().code, accepted.error().message);
+  if (!accepted) return refused(*line, accepted.error());
   if (!accepted->contains("request"))
     return take_back({0, {ExitCode::io, "softgripd sent a malformed reply: `result.request` is missing"}});
   if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
-    std::fprintf(stderr, "softgrip: warning:%s\n", problem_list(warnings).c_str());
+    std::fprintf(stderr, "softgrip: %s\n",
+                 escape_control_characters("warning:" + problem_list(warnings)).c_str());
   if (options_.wait) {
     const auto end = follow(accepted->value("request", std::uint64_t{0}), newest_event);
     return end ? *end : take_back(end.error());
@@ -196,14 +204,20 @@ ExitCode FollowedStart::run(Json request, std::uint64_t newest_event) {
   return ExitCode::done;
 }
 
+/// Returns true if SEQUENCE is a local file, and not a name in the sequence directory of the daemon. A folder
+/// with the name of a sequence has no effect.
+bool is_local_file(const std::string& sequence) {
+  return sequence.find('/') != std::string::npos || (is_there(sequence) && !is_folder(sequence));
+}
+
 ExitCode run(const StartOptions& options) {
   constexpr std::size_t longest_sequence = 256 * 1024;
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
   Json request{{"command", "start"}, {"sequence", options.sequence}};
   if (!arguments->empty()) request["parameters"] = json_of(*arguments);
-  // If the name is a local file, send its text. Otherwise the daemon finds the sequence by its name.
-  if (::access(options.sequence.c_str(), R_OK) == 0) {
+  // The text of a local file is sent. Otherwise the daemon finds the sequence by its name.
+  if (is_local_file(options.sequence)) {
     const auto text = read_file(options.sequence, longest_sequence);
     if (!text) return fail(ExitCode::io, text.error());
     request["sequence_text"] = *text;

@@ -77,6 +77,7 @@ int check_header(std::string_view line, Lengths& lengths) {
   while (value.starts_with(' ')) value.remove_prefix(1);
   while (value.ends_with(' ')) value.remove_suffix(1);
   if (equal_ignoring_case(name, "transfer-encoding")) return 501;
+  if (equal_ignoring_case(name, "content-encoding")) return 415;
   if (equal_ignoring_case(name, "expect")) return 417;
   if (equal_ignoring_case(name, "host")) return ++lengths.hosts > 1 ? 400 : 0;
   if (!equal_ignoring_case(name, "content-length")) return 0;

@@ -103,7 +103,8 @@ struct Frame {
 
 /// Checks the bytes that a client has sent so far. The check is stricter than the check of cpp-httplib, which
 /// parses the request after this check. Lines must end with CR LF. Control characters, folded lines, a second
-/// Content-Length, chunked bodies and Expect headers are refused.
+/// Content-Length, chunked bodies, compressed bodies (Content-Encoding) and Expect headers are refused. A
+/// compressed body could need much more memory than `longest_body`.
 [[nodiscard]] Frame frame_of(std::string_view bytes);
 
 }  // namespace softgrip::web

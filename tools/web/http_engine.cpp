@@ -36,10 +36,12 @@ class MemoryStream final : public httplib::Stream {
   std::string written_;
 };
 
-/// Removes the byte ranges from a request, so that the response contains the complete file. With overlapping
-/// ranges, a client could make a large response of a small file.
-void remove_ranges(httplib::Request& request) {
+/// Removes the parts of a request that would make the response expensive. With overlapping byte ranges, a
+/// client could make a large response of a small file. With Accept-Encoding, cpp-httplib would compress the
+/// response, and the compression of a file of the page takes more than 1 s.
+void remove_expensive_parts(httplib::Request& request) {
   request.ranges.clear();
+  request.headers.erase("Accept-Encoding");
 }
 
 }  // namespace
@@ -48,9 +50,9 @@ std::string HttpEngine::answer(std::string_view request) {
   MemoryStream stream(request);
   bool closed = false;
 #if SOFTGRIP_HTTPLIB_ADDRESSES
-  process_request(stream, {}, 0, {}, 0, true, closed, remove_ranges);
+  process_request(stream, {}, 0, {}, 0, true, closed, remove_expensive_parts);
 #else
-  process_request(stream, true, closed, remove_ranges);
+  process_request(stream, true, closed, remove_expensive_parts);
 #endif
   return stream.take();
 }

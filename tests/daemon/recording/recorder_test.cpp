@@ -12,6 +12,7 @@
 
 #include "base/files.h"
 #include "base/periodic_schedule.h"
+#include "daemon/socket/service.h"
 #include "tests/support/files.h"
 
 namespace softgrip::daemon::recorder_test {
@@ -34,10 +35,14 @@ class RecorderTest : public ::testing::Test {
     provenance_.rate_hz = 100;
     provenance_.virtual_time = true;
     provenance_.seed = 42;
+    store("pick stone", 7);
+  }
+
+  void store(const char* name, std::uint32_t request) {
     auto sequence = std::make_shared<LoadedSequence>();
-    sequence->prepared.name = "pick stone";
+    sequence->prepared.name = name;
     sequence->sha256 = "00ff";
-    sequence_store_.put(7, sequence);
+    sequence_store_.put(request, sequence);
   }
 
   Recorder& recorder() {
@@ -59,17 +64,21 @@ class RecorderTest : public ::testing::Test {
 
   void ticks(int count, State state) {
     for (int i = 0; i < count; ++i) {
-      for (std::uint8_t channel = 0; channel < 2; ++channel) {
-        Record record;
-        record.at = now_;
-        record.state = state;
-        record.channel = channel;
-        record.output.validity = model::Validity::valid;
-        shared_.records.push(record);
-      }
-      now_ += period;
+      tick(state);
       recorder().drain();
     }
+  }
+  /// Pushes the rows of one tick, which the recorder does not take yet.
+  void tick(State state) {
+    for (std::uint8_t channel = 0; channel < 2; ++channel) {
+      Record record;
+      record.at = now_;
+      record.state = state;
+      record.channel = channel;
+      record.output.validity = model::Validity::valid;
+      shared_.records.push(record);
+    }
+    now_ += period;
   }
 
   /// Returns the sorted names of all run folders.
@@ -156,6 +165,32 @@ TEST_F(RecorderTest, AStartShortlyAfterARunGetsASeparateRecording) {
   recorder().finish();
   EXPECT_EQ(folders(), (std::vector<std::string>{"run-0001_pick_stone", "run-0002_pick_stone"}));
   EXPECT_EQ(json("run-0001_pick_stone")["rows"], 40);
+}
+
+TEST_F(RecorderTest, TwoStartsThatTheServiceTookFirstGetTheirOwnRecordings) {
+  store("free stroke", 8);
+  Service service(provenance_.channel_names, 0, shared_, log_, sequence_store_);
+  event(Event::Kind::sequence_started, {}, 7);
+  for (int i = 0; i < 10; ++i) tick(State::running);
+  event(Event::Kind::sequence_started, {}, 8);
+  for (int i = 0; i < 20; ++i) tick(State::running);
+  service.pump();
+  recorder().finish();
+  ASSERT_EQ(folders(), (std::vector<std::string>{"run-0001_pick_stone", "run-0002_free_stroke"}));
+  EXPECT_EQ(json(folders()[0])["sequence"]["request"], 7);
+  EXPECT_EQ(json(folders()[0])["rows"], 20);
+  EXPECT_EQ(json(folders()[1])["sequence"]["name"], "free stroke");
+  EXPECT_EQ(json(folders()[1])["rows"], 40);
+  EXPECT_EQ(sequence_store_.find(7), nullptr);
+}
+
+TEST_F(RecorderTest, AStartAfterAStartWithoutAStoredSequenceGetsASeparateRecording) {
+  for (const std::uint32_t request : {20U, 21U}) {
+    event(Event::Kind::sequence_started, {}, request);
+    ticks(10, State::running);
+  }
+  recorder().finish();
+  EXPECT_EQ(folders(), (std::vector<std::string>{"run-0001", "run-0002"}));
 }
 
 TEST_F(RecorderTest, ModeAlwaysWritesOneRecordingFromStartToStop) {
@@ -314,6 +349,37 @@ TEST_F(RecorderTest, ANewRecordingStartsAMinuteAfterAWriteFailure) {
   ticks(10, State::running);
   recorder().finish();
   EXPECT_EQ(folders().size(), 1U);
+}
+
+TEST_F(RecorderTest, ARecordingThatBeginsInTheMiddleOfASequenceStatesTheSequence) {
+  settings_.directory = "/proc/softgrip";
+  event(Event::Kind::sequence_started, {}, 7);
+  ticks(10, State::running);
+  settings_.directory = temporary_.path();
+  ticks(6100, State::running);
+  ticks(100, State::idle);
+  ticks(10, State::stopping);
+  recorder().finish();
+  ASSERT_EQ(folders(), (std::vector<std::string>{"run-0001_pick_stone", "run-0002"}));
+  EXPECT_EQ(json(folders()[0])["sequence"]["request"], 7);
+  EXPECT_TRUE(json(folders()[1])["sequence"].is_null()) << "the sequence has ended before this recording";
+}
+
+TEST_F(RecorderTest, EachStartInThePauseAfterADiskErrorIsReported) {
+  settings_.directory = "/proc/softgrip";
+  for (int run = 0; run < 3; ++run) {
+    event(Event::Kind::sequence_started, {}, 7);
+    ticks(10, State::running);
+    ticks(100, State::idle);
+  }
+  const auto events = log_.since(0, 100);
+  ASSERT_EQ(events.size(), 3U);
+  EXPECT_EQ(events[0].kind, "recording_failed");
+  for (const std::size_t second : {1U, 2U}) {
+    EXPECT_EQ(events[second].kind, "recording_skipped");
+    EXPECT_NE(events[second].text.find("'pick stone' is not recorded"), std::string::npos)
+        << events[second].text;
+  }
 }
 
 TEST_F(RecorderTest, RunJsonExistsFromTheFirstRow) {

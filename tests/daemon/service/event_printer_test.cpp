@@ -1,10 +1,17 @@
 #include "daemon/service/event_printer.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <functional>
 #include <sstream>
+#include <thread>
 #include <vector>
+
+#include "base/descriptor.h"
 
 namespace softgrip::daemon::event_printer_test {
 namespace {
@@ -57,6 +64,41 @@ TEST(EventPrinter, ReportsTheNumberBeforeTheNextEventOfAnotherKind) {
   EXPECT_NE(lines[22].find("later"), std::string::npos) << lines[22];
   EXPECT_NE(lines[23].find("a single step"), std::string::npos) << lines[23];
   for (std::size_t i = 24; i < lines.size(); ++i) EXPECT_FALSE(reports(lines[i], "")) << lines[i];
+}
+
+/// Prints one event while the pipe at the standard error is full, and reads the pipe 10 ms later. Returns the
+/// part of the output that is in the pipe when wait_until_written() returns.
+std::string output_through_a_full_pipe() {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC), 0);
+  const Descriptor reader(ends[0]);
+  Descriptor writer(ends[1]);
+  const std::string page(4096, 'x');
+  while (::write(writer.get(), page.data(), page.size()) > 0) {
+  }
+  const Descriptor terminal(::dup(STDERR_FILENO));
+  ::dup2(writer.get(), STDERR_FILENO);
+  EventPrinter printer(true);
+  printer.print(event_of("last", Severity::error, 0, "the last event"));
+  std::thread late([&reader, &page] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::string filling(64 * page.size(), '\0');
+    EXPECT_GT(::read(reader.get(), filling.data(), filling.size()), 0);
+  });
+  printer.wait_until_written(std::chrono::seconds(20));
+  ::dup2(terminal.get(), STDERR_FILENO);
+  late.join();
+  std::string output(page.size(), '\0');
+  const ssize_t count = ::read(reader.get(), output.data(), output.size());
+  output.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return output;
+}
+
+TEST(EventPrinter, WaitsUntilItsThreadHasWrittenAllLines) {
+  // The printer drops a line that it cannot write within 200 ms, so a busy machine needs a second attempt.
+  std::string output;
+  for (int attempts = 0; output.empty() && attempts < 3; ++attempts) output = output_through_a_full_pipe();
+  EXPECT_NE(output.find("the last event"), std::string::npos) << output;
 }
 
 TEST(EventPrinter, AnEndWithoutSuppressedEventsReportsNone) {

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -263,10 +264,57 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
   EXPECT_EQ(code({"--help"}), 0);
   EXPECT_EQ(code({"--version"}), 0);
   EXPECT_EQ(code({"--config", rig, "--check"}), 0);
-  EXPECT_EQ(code({"--config", rig, "--sequence", folder_.path() + "/none.yaml"}), 3);
   const std::string broken = make_rig(folder_.path(), {{"rate_hz: 200", "rate: 200"}});
   EXPECT_EQ(code({"--config", broken, "--check"}), 3);
   EXPECT_EQ(code({"--config", broken}), 3);
+}
+
+TEST_F(SoftgripdTest, AFileThatCannotBeReadIsAnInputError) {
+  const std::string rig = make_rig(folder_.path());
+  const std::string none = folder_.path() + "/none.yaml";
+  const std::string pick = sequences + "pick_stone.yaml";
+  for (const auto& [config, sequence, unread] :
+       std::vector<std::array<std::string, 3>>{{none, pick, none},
+                                               {folder_.path(), pick, folder_.path()},
+                                               {rig, none, none},
+                                               {rig, sequences, sequences}}) {
+    for (const std::string mode : {"--virtual-time", "--check"}) {
+      SoftgripdProcess process(folder_.path(),
+                               {.arguments = {"--config", config, "--sequence", sequence, mode}});
+      EXPECT_EQ(process.wait(), 4) << unread << " " << mode;
+      EXPECT_NE(process.output().find("softgripd: cannot read " + unread + ": "), std::string::npos)
+          << process.output();
+    }
+  }
+  for (const std::vector<std::string>& mode :
+       {std::vector<std::string>{"--safe-outputs"}, std::vector<std::string>{"--device", "gpiochip0"}}) {
+    std::vector<std::string> arguments{"--config", none};
+    arguments.insert(arguments.end(), mode.begin(), mode.end());
+    EXPECT_EQ(SoftgripdProcess(folder_.path(), {.arguments = arguments}).wait(), 4) << mode.front();
+  }
+}
+
+TEST_F(SoftgripdTest, CheckRefusesAFileOfAnotherKindWithAReason) {
+  const std::string rig = make_rig(folder_.path());
+  const std::string pick = sequences + "pick_stone.yaml";
+  const std::string model = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
+  const std::string map = SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml";
+  for (const auto& [config, sequence, reason] : std::vector<std::array<std::string, 3>>{
+           {model, "", model + " is a model, but --config requires a rig"},
+           {pick, "", pick + " is a sequence, but --config requires a rig"},
+           {rig, rig, rig + " is a rig, but --sequence requires a sequence"},
+           {rig, model, model + " is a model, but --sequence requires a sequence"},
+           {rig, map, map + " is a board map, but --sequence requires a sequence"}}) {
+    const ScratchFolder folder;
+    std::vector<std::string> arguments{"--config", config, "--check"};
+    if (!sequence.empty()) arguments.insert(arguments.end(), {"--sequence", sequence});
+    SoftgripdProcess process(folder.path(), {.arguments = arguments});
+    EXPECT_EQ(process.wait(), 3) << reason;
+    EXPECT_NE(process.output().find("softgripd: " + reason), std::string::npos) << process.output();
+    EXPECT_EQ(process.output().find("fit to run"), std::string::npos) << process.output();
+  }
+  SoftgripdProcess right(folder_.path(), {.arguments = {"--config", rig, "--sequence", pick, "--check"}});
+  EXPECT_EQ(right.wait(), 0) << right.output();
 }
 
 TEST_F(SoftgripdTest, RefusesAnAmbiguousConverterNameWithoutWriting) {

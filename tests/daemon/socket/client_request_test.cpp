@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <utility>
 
+#include <fmt/format.h>
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace softgrip::daemon::client_request_test {
@@ -118,6 +120,10 @@ TEST(ClientRequest, EveryInvalidRequestIsRefusedWithTheReason) {
       {R"({"command":"vent","start_id":"a"})", "has no key 'start_id'"},
       {R"({"command":"start","sequence":"s","dry_run":true,"start_id":"a"})", "a dry run starts nothing"},
       {R"({"command":"hello","client":"a\nb"})", "'client' must have at most 64 bytes"},
+      {R"({"command":"hello","client":"a\u007fb"})", "no control characters"},
+      {R"({"command":"hello","client":"\u0080"})", "no control characters"},
+      {R"({"command":"hello","client":"\u009b31m"})", "no control characters"},
+      {R"({"command":"stop","start_id":"\u009f"})", "no control characters"},
       {R"({"command":"hello","api":0})", "'api' must be a whole number"},
       {R"({"command":"subscribe","since":-1})", "'since' must be a whole number"},
   };
@@ -145,12 +151,19 @@ TEST(ClientRequest, AClientNameHasAtMost64Characters) {
   EXPECT_TRUE(parse_client_request(hello(64)));
   EXPECT_FALSE(parse_client_request(hello(65)));
   EXPECT_EQ(parse_client_request(R"({"command":"subscribe"})")->since, std::nullopt);
+  EXPECT_EQ(parse_client_request(R"({"command":"hello","client":"Zelle \u00a0\u00e4 \\ 4"})")->client,
+            "Zelle \u00a0\u00e4 \\ 4");
 }
 
 TEST(ClientRequest, AnErrorContainsTheIdOfTheRequest) {
   const auto request = parse_client_request(R"({"id":3,"command":"fly"})");
   ASSERT_FALSE(request);
   EXPECT_EQ(request.error().id, 3U);
+  for (const char* invalid : {"-1", "1.5", "9007199254740993", "null", R"("a")"}) {
+    const auto refused = parse_client_request(fmt::format(R"({{"id":{},"command":"status"}})", invalid));
+    ASSERT_FALSE(refused) << invalid;
+    EXPECT_EQ(refused.error().id, std::nullopt) << invalid;
+  }
 }
 
 TEST(ClientRequest, DeeplyNestedJsonIsRefused) {

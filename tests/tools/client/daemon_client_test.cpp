@@ -134,6 +134,23 @@ TEST(DaemonClient, MapsRefusalsToExitCodes) {
   EXPECT_NE(sequence.error().message.find("a.yaml:3:5: m (h)"), std::string::npos);
 }
 
+TEST(DaemonClient, ALineThatIsTooLongIsARefusedInput) {
+  const auto refused = answer_to(R"({"id":null,"ok":false,"error":{"code":"too_long","message":"m"}})"
+                                 "\n");
+  EXPECT_EQ(refused.error().code, ExitCode::input_refused);
+}
+
+TEST(DaemonClient, AMessageOfTheDaemonContainsNoControlCharacter) {
+  const auto owned = answer_to(
+      R"({"id":null,"ok":false,"error":{"code":"owned","message":"'\u009b31m\u001b[0m' has started"}})"
+      "\n");
+  EXPECT_EQ(owned.error().message, R"('\xc2\x9b31m\x1b[0m' has started)");
+  const auto sequence = answer_to(
+      R"({"id":null,"ok":false,"error":{"code":"sequence_refused","message":"no","problems":[{"file":"a\u009b.yaml","line":3,"column":5,"message":"m\u001b","hint":""}]}})"
+      "\n");
+  EXPECT_EQ(sequence.error().message, "no\na\\xc2\\x9b.yaml:3:5: m\\x1b");
+}
+
 TEST(DaemonClient, ReportsMalformedAndIncompleteRepliesAsIoErrors) {
   for (const char* nonsense : {"hello\n", "[1]\n", "{}\n",
                                R"({"ok":1})"

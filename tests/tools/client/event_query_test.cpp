@@ -51,6 +51,14 @@ TEST_F(EventQueryTest, SelectsEventsByIdSeverityAndTime) {
   EXPECT_FALSE(matches({{0, "2025-11-20T03:46:12.001Z"}, "information", 1}, event));
 }
 
+TEST_F(EventQueryTest, AGapInTheIdsIsTheNumberOfMissingEvents) {
+  EXPECT_EQ(missing_before({{"id", 8}}, 7), 0U);
+  EXPECT_EQ(missing_before({{"id", 11}}, 7), 3U);
+  EXPECT_EQ(missing_before({{"id", 11}}, 0), 0U) << "the first event that a client receives";
+  EXPECT_EQ(missing_before({{"id", 7}}, 7), 0U);
+  EXPECT_EQ(missing_before(Json::object(), 7), 0U);
+}
+
 TEST_F(EventQueryTest, AnEventLineShowsTheLocalTimeIfTheEventHasADate) {
   Json event{{"time_s", 12.34}, {"severity", "error"}, {"text", "The board is gone."}};
   EXPECT_EQ(line_of_event(event), "     12.340 s  error        The board is gone.");

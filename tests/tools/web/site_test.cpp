@@ -206,6 +206,17 @@ TEST_F(SiteTest, ASessionNeedsAValidToken) {
   EXPECT_NE(opened.bytes.find("HttpOnly; SameSite=Strict"), std::string::npos);
 }
 
+TEST_F(SiteTest, SendsNoCompressedResponse) {
+  for (const char* path : {"/chart.js", "/page.js", "/"}) {
+    const Outcome answered = site_.serve(
+        std::string("GET ") + path +
+            " HTTP/1.1\r\nHost: localhost\r\nACCEPT-encoding: gzip\r\nAccept-Encoding: br\r\n\r\n",
+        0);
+    EXPECT_EQ(answered.status, 200) << path;
+    EXPECT_EQ(answered.bytes.find("Content-Encoding"), std::string::npos) << path;
+  }
+}
+
 TEST_F(SiteTest, IgnoresRangeRequests) {
   std::string ranges = "0-0";
   while (ranges.size() < 7000) ranges += ",0-1";
