@@ -18,6 +18,7 @@ namespace softgrip::daemon {
 namespace {
 
 constexpr mode_t file_mode = 0644;
+constexpr mode_t folder_mode = 0777;  // as in std::filesystem::create_directories()
 /// Space that is reserved beyond the required space, so that few calls reserve space [bytes].
 constexpr std::int64_t more_room = 256 * 1024;
 
@@ -39,6 +40,28 @@ std::string recorded_already(const std::string& path) {
   std::error_code ignored;
   if (path.empty() || !std::filesystem::exists(csv_in(path), ignored)) return {};
   return there_already(csv_in(path));
+}
+
+std::string why_unrecordable(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.empty()) return {};
+  std::error_code ignored;
+  fs::path missing;  // the first folder in the path that does not exist
+  for (fs::path at = plain_path(path); !at.empty() && !fs::exists(fs::symlink_status(at, ignored));
+       at = at.parent_path())
+    missing = at;
+  int error = 0;
+  if (!missing.empty()) {
+    if (mkdir(missing.c_str(), folder_mode) == 0)
+      rmdir(missing.c_str());
+    else
+      error = errno;
+  } else if (!is_folder(path)) {
+    error = ENOTDIR;
+  } else if (access(path.c_str(), W_OK | X_OK) != 0) {
+    error = errno;
+  }
+  return error == 0 ? std::string() : sentence("nothing can be recorded in " + path, error);
 }
 
 tl::expected<RunFolder, std::string> RunFolder::create(const std::string& path, std::string_view header,

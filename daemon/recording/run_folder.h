@@ -15,6 +15,12 @@ namespace softgrip::daemon {
 /// caller can call this function to check the folder before any motion.
 [[nodiscard]] std::string recorded_already(const std::string& path);
 
+/// Returns a sentence with the error if `path` cannot become the folder of a recording: it is no folder, it
+/// cannot be created, or this user may not write into it. Returns an empty text if it can, or if `path` is
+/// empty. To test if a folder can be created, this function creates the folder and removes it. The caller can
+/// call this function to check the folder before any motion.
+[[nodiscard]] std::string why_unrecordable(const std::string& path);
+
 /// Writes a recording and handles errors of the disk. After the first failed write to run.csv, no more rows
 /// are written. The file is truncated to its last complete line, and error() gives the reason.
 ///

@@ -240,6 +240,8 @@ tl::expected<std::unique_ptr<Daemon>, NotCreated> Daemon::create(rig::RigFile ri
   };
   if (std::string there = recorded_already(options.record_folder); !there.empty())
     return refused(std::move(there), ExitCode::state_refused);
+  if (std::string why = why_unrecordable(options.record_folder); !why.empty())
+    return refused(std::move(why), ExitCode::io);
   if (options.virtual_time) {
     if (!std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board))
       return refused("virtual time needs a simulated board, because a real board runs in real time");

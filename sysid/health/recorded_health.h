@@ -39,11 +39,13 @@ struct RecordedHealth {
   HealthOptions options;
   std::vector<JudgedFinger> fingers;  ///< sorted by name; empty: no recording can be compared with a baseline
   std::vector<SharedChange> shared;
-  std::vector<SkippedRun> skipped;
+  std::vector<SkippedRun> skipped;  ///< unusable recordings, and given paths that cannot be read
   std::string scores;  ///< text of the earlier scores, followed by the scores of the new recordings
 
   /// Returns true if an alarm of a finger is active.
   [[nodiscard]] bool alarm() const;
+  /// Returns true if a given path of the recordings does not exist or cannot be read.
+  [[nodiscard]] bool incomplete() const;
 };
 
 /// Folder of a baseline that cannot be used, and the reason.

@@ -12,6 +12,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
+#include "base/sha256.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
 #include "sysid/logs/finite_values.h"
@@ -27,6 +28,34 @@ namespace fs = std::filesystem;
 bool is_run(const fs::path& path) {
   std::error_code ignored;
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
+}
+
+/// Returns the folder of the recording if `path` is the run.csv of a recording, so that run.json is also
+/// read. Otherwise returns `path`.
+std::string recording_at(const std::string& path) {
+  const fs::path csv = plain_path(path);
+  if (csv.filename() != "run.csv" || is_folder(path)) return path;
+  std::error_code error;
+  const fs::path folder = csv.has_parent_path() ? csv.parent_path() : fs::current_path(error);
+  return is_there(folder / "run.json") ? folder.string() : path;
+}
+
+/// Returns the first characters of the hash of a recording's log; empty if the log cannot be read.
+std::string hash_of_log(const std::string& path) {
+  constexpr std::size_t letters = 12;
+  const auto file = log_file_of(path);
+  if (!file) return {};
+  const auto text = read_file(*file, largest_health_file);
+  return text ? sha256(*text).substr(0, letters) : std::string();
+}
+
+/// Returns true if the recording at `path` is not the recording of an earlier score with the same name.
+bool is_namesake(const std::string& path, const ScoredRun& earlier) {
+  const std::string start = read_recording_data(path).started_at;
+  if (!start.empty() && !earlier.started_at.empty()) return start != earlier.started_at;
+  if (earlier.log_hash.empty()) return false;
+  const std::string hash = hash_of_log(path);
+  return !hash.empty() && hash != earlier.log_hash;
 }
 
 /// Returns the median temperature of a run. One value per run is enough, because the temperature of a finger
@@ -60,22 +89,24 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     scores.skipped.push_back({name, problems.empty() ? recording.error() : problems.list().front().message});
     return;
   }
+  const std::string hash = recording->started_at.empty() ? hash_of_log(path) : std::string();
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
-    const FingerBase* const base = base_of(finger);
-    if (base == nullptr) {
-      scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, {}, {}});
-      continue;
+    ScoredRun run{recording->name, finger, recording->started_at, recording->recipe, {}, {}};
+    run.log_hash = hash;
+    if (const FingerBase* const base = base_of(finger); base != nullptr) {
+      const model::OutputUnit unit = recording->channels[c].output_unit;
+      if (unit != base->base.model.output_unit) {
+        scores.skipped.push_back({name, "the readings of the recording are in " + std::string(name_of(unit)) +
+                                            ", but the baseline of `" + finger + "` is in " +
+                                            std::string(name_of(base->base.model.output_unit))});
+        continue;
+      }
+      run.baseline = base->id;
+      run.score = score_of(*recording, c, base->base);
+      run.temperature_c = temperature_of(recording->channels[c]);
     }
-    const model::OutputUnit unit = recording->channels[c].output_unit;
-    if (unit != base->base.model.output_unit) {
-      scores.skipped.push_back({name, "the readings of the recording are in " + std::string(name_of(unit)) +
-                                          ", but the baseline of `" + finger + "` is in " +
-                                          std::string(name_of(base->base.model.output_unit))});
-      continue;
-    }
-    scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, base->id,
-                           score_of(*recording, c, base->base), temperature_of(recording->channels[c])});
+    scores.runs.push_back(std::move(run));
   }
 }
 
@@ -101,6 +132,7 @@ std::vector<ScoredRun> read_scores(std::string_view text) {
     }
     const Json& temperature = json_member(line, "temperature_c");
     if (temperature.is_number()) run.temperature_c = temperature.get<double>();
+    run.log_hash = json_text(line, "log_hash");
     runs.push_back(std::move(run));
   }
   return runs;
@@ -117,6 +149,7 @@ std::string line_of(const ScoredRun& run) {
     line[std::string(sysid::health_number_infos[i].id)] = std::isfinite(value) ? Json(value) : Json(nullptr);
   }
   if (std::isfinite(run.temperature_c)) line["temperature_c"] = run.temperature_c;
+  if (!run.log_hash.empty()) line["log_hash"] = run.log_hash;
   return json_dump(line) + "\n";
 }
 
@@ -124,7 +157,7 @@ std::vector<std::string> find_runs(const std::vector<std::string>& paths) {
   std::vector<std::string> runs;
   for (const std::string& path : paths) {
     if (is_run(path)) {
-      runs.push_back(path);
+      runs.push_back(recording_at(path));
       continue;
     }
     std::vector<std::string> inside;
@@ -168,18 +201,16 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     done.insert(run.run);
   }
   for (const auto& [run, finger] : stale) done.erase(run);
-  std::map<std::string, std::string> start_of;
-  for (const ScoredRun& run : known) start_of[run.run] = run.started_at;
+  std::map<std::string, const ScoredRun*> earlier;
+  for (const ScoredRun& run : known) earlier[run.run] = &run;
   RunScores scores;
   const auto skip_namesake = [&](const std::string& path) {
     scores.skipped.push_back({name_in_path(path), "another recording has the same name: rename " + path});
   };
   std::vector<std::string> unread;
   for (const std::string& path : paths) {
-    const auto earlier = start_of.find(name_in_path(path));
-    const std::string start =
-        earlier == start_of.end() ? std::string() : read_recording_data(path).started_at;
-    if (!start.empty() && !earlier->second.empty() && start != earlier->second)
+    const auto same_name = earlier.find(name_in_path(path));
+    if (same_name != earlier.end() && is_namesake(path, *same_name->second))
       skip_namesake(path);
     else if (!done.contains(name_in_path(path)))
       unread.push_back(path);

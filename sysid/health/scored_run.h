@@ -27,6 +27,8 @@ struct ScoredRun {
   GripScore score;
   /// Median temperature of the run [degC]; NaN: not recorded.
   double temperature_c = std::numeric_limits<double>::quiet_NaN();
+  /// First characters of the SHA-256 hash of the log, if the start time is not known; otherwise empty.
+  std::string log_hash = {};
 };
 
 /// Largest size of a file that `softgrip health` reads [bytes].
@@ -45,7 +47,8 @@ inline constexpr const char* scores_file = "health-scores.jsonl";
 [[nodiscard]] std::string line_of(const ScoredRun& run);
 
 /// Returns the recordings that the paths select. A path to a file or to a folder with a run.csv is a
-/// recording. A path to any other folder selects all recordings in this folder, sorted by name.
+/// recording. For a run.csv beside a run.json, the recording is their folder. A path to any other folder
+/// selects all recordings in this folder, sorted by name.
 [[nodiscard]] std::vector<std::string> find_runs(const std::vector<std::string>& paths);
 
 /// The baseline of a finger, and the id by which the scores refer to the baseline.
@@ -60,6 +63,7 @@ using BaseOf = std::function<const FingerBase*(const std::string& finger)>;
 struct SkippedRun {
   std::string run, why;
   std::string finger = {};  ///< finger whose readings were not used; empty: the whole recording
+  bool unreadable = false;  ///< true: `run` is a given path that does not exist or cannot be read
 };
 
 /// Callback before each recording is read.
@@ -76,8 +80,9 @@ struct RunScores {
 
 /// Scores each recording for which `known` contains no scores with the current baselines. A recording is read
 /// again if a finger without a baseline now has a baseline. An unusable or unfinished recording is added to
-/// `skipped`, and also a recording with the name of an earlier recording that started at another time. If the
-/// computation is cancelled, it ends before the next recording.
+/// `skipped`, and also a recording with the name of an earlier recording that started at another time. If a
+/// start time is not known, a recording whose log differs from the log of the earlier recording is added to
+/// `skipped`. If the computation is cancelled, it ends before the next recording.
 /// @param on_recording  may be empty
 [[nodiscard]] RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
                                    const std::vector<ScoredRun>& known, const OnRecording& on_recording = {});

@@ -168,12 +168,18 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
                      "with these rows. Record a run without contact");
 }
 
+/// Returns a sentence with the option and the header of a column that state its unit. The sentence begins
+/// with the full stop of the sentence before it.
+std::string state_unit(const std::string& role, const std::string& unit) {
+  return ". State the unit of this column: `softgrip import --unit " + role + "=" + unit + "`, or `(" + unit +
+         ")` in the header of the column";
+}
+
 /// Returns a text about a column: its name, its largest value, and the option that states the probable unit.
 std::string state_unit(const PressureColumn& column, const ColumnExtent& p, const char* unit) {
   const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
   return ". The largest value of `" + column.name + "` is " + significant(largest, 3) +
-         ". State the unit of this column: `softgrip import --unit " + column.role + "=" + unit + "`, or `(" +
-         unit + ")` in the header of the column";
+         state_unit(column.role, unit);
 }
 
 void judge_unit_of_pressure(const Log& log, const PressureColumn& column,
@@ -219,15 +225,18 @@ void check_spans(const Log& log, std::vector<std::string>& warnings) {
       warnings.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
                          (unit == OutputUnit::deg
                               ? " deg: check if the values are in radians or V instead of deg"
-                              : " mm: check if the values are in metres or V instead of mm"));
+                              : " mm: check if the values are in metres or V instead of mm") +
+                         state_unit("displacement", unit == OutputUnit::deg ? "rad" : "m"));
     if (y->width() > large_displacement_mm)
       warnings.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
                          (unit == OutputUnit::deg
                               ? " deg: check if the values are in counts or degrees instead of radians"
-                              : " mm: check if the values are in micrometres instead of mm"));
+                              : " mm: check if the values are in micrometres instead of mm") +
+                         state_unit("displacement", unit == OutputUnit::deg ? "deg" : "um"));
   }
   if (const auto t = extent_of(log.temperature_c); t && t->lowest > 200)
-    warnings.emplace_back("the temperature is above 200 C: check if the values are in kelvin");
+    warnings.push_back("the temperature is above 200 C: check if the values are in kelvin" +
+                       state_unit("temperature", "K"));
 }
 
 }  // namespace
@@ -245,9 +254,10 @@ std::vector<std::string> plausibility_warnings(const Log& log, const PressureCol
     const double interval = sampling_of(log).median_interval_s;
     if (interval > slow_sampling_s)
       warnings.push_back("samples are " + significant(interval) +
-                         " s apart: check if the times are in ms instead of s");
+                         " s apart: check if the times are in ms instead of s" + state_unit("time", "ms"));
     if (interval < 1e-5)
-      warnings.push_back("samples are " + significant(interval) + " s apart: check the unit of the time");
+      warnings.push_back("samples are " + significant(interval) +
+                         " s apart: check if the times are in h or d instead of s" + state_unit("time", "h"));
   }
   return warnings;
 }

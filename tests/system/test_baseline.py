@@ -140,7 +140,8 @@ class Baseline(bench.BenchTest):
                 (["--rig", free, "--rig-channel", "left", "--yes", "--gauge", "nowhere.csv", "--out", "base"], 4, "nowhere.csv"),
                 (["--rig", free, "--rig-channel", "left", "--yes", "--model", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),
                 (["--out", "base"], 2, "needs --rig or --data"),
-                (["--check", "config"], 3, "config is not a baseline")):
+                (["--check", "config"], 3, "config is not a baseline"),
+                (["--check", "nowhere"], 4, "cannot read nowhere: No such file or directory")):
             with self.subTest(why):
                 self.assertIn(why, self.softgrip("baseline", *arguments, expect=code).stderr)
         upper = self.simulated(("pressure_min_kpa: 0", "pressure_min_kpa: 2"))

@@ -67,6 +67,19 @@ class BoardOwnership(bench.BenchTest):
         self.assertEqual(safe.wait(), 5)
         self.assertIn("another softgrip program", safe.output())
 
+    def test_commands_that_move_the_rig_are_refused_while_the_daemon_runs(self):
+        emulator, rig, daemon = self.occupied_board()
+        run = ("run", "config/sequences/pick_stone.yaml")
+        for command in ((*run,), (*run, "--no-socket"), ("calibrate", "--channel", "left", "--move"),
+                        ("baseline", "--rig-channel", "left", "--yes", "--out", "base")):
+            told = self.softgrip(*command, "--rig", rig, expect=5).stderr
+            self.assertIn("softgripd runs and controls the board: first stop softgripd", told)
+        second = self.second_rig(rig)
+        for command, code in ((run, 4), (("baseline", "--rig-channel", "left", "--yes", "--out", "base"), 5)):
+            self.assertIn("another softgrip program", self.softgrip(*command, "--rig", second, expect=code).stderr)
+        self.assertEqual(max(emulator.commands_kpa()), 0)
+        self.assertEqual(daemon.status()["state"], "idle")
+
     def test_every_terminating_signal_vents_and_exits_with_code_0(self):
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)

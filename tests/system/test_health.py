@@ -136,6 +136,26 @@ class Health(bench.BenchTest):
         # The command must not score the same recording a second time.
         self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
 
+    def test_a_missing_path_causes_an_input_error_and_the_other_paths_are_used(self):
+        def refused(*runs):
+            done = self.softgrip("health", *runs, "--baseline", self.baseline, "--out", "out", expect=4)
+            self.assertIn("nothere is skipped: the path cannot be read: No such file or directory", done.stderr)
+
+        refused("nothere")
+        self.assertFalse((self.folder / "out/health.json").exists())
+        refused(*self.healthy, "nothere")
+        result = json.loads((self.folder / "out/health.json").read_text())
+        self.assertEqual([finger["grips"] for finger in result["fingers"]], [len(self.healthy)] * 2)
+        self.assertEqual([one["run"] for one in result["skipped"]], ["nothere"])
+        refused("nothere")
+        refused(*self.later(Finger(leak=0.04)), "nothere")
+        self.assertEqual(json.loads((self.folder / "out/health.json").read_text())["state"], "alarm")
+
+    def test_the_run_csv_of_a_recording_gives_the_result_of_its_folder(self):
+        for out, runs in (("folders", self.healthy), ("files", [run / "run.csv" for run in self.healthy])):
+            self.softgrip("health", *runs, "--baseline", self.baseline, "--out", out)
+        self.assertEqual(*((self.folder / out / "health-scores.jsonl").read_text() for out in ("folders", "files")))
+
     def test_a_finger_without_a_baseline_is_reported_once_in_each_call(self):
         shutil.copytree(self.baseline, self.folder / "bases/left")
         for _ in range(2):

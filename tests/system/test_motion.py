@@ -138,6 +138,15 @@ class Silent(MotionTest):
         self.assertIn("the board cannot be used, so the rig did not become idle within 10 s: ", last)
         self.assertIn("Connection refused", last)
 
+    def test_run_refuses_a_file_as_recording_folder_before_it_uses_the_board(self):
+        file = self.write("file", "mine")
+        for path in ("file", "file/new"):
+            done = self.softgrip("run", "config/sequences/pick_stone.yaml", "--no-socket", "--rig", self.rig_path,
+                                 "--record", path, expect=4)
+            self.assertIn(f"nothing can be recorded in {path}: Not a directory", done.stderr)
+        self.assertEqual(self.board.status()["requests"], 0)
+        self.assertEqual(file.read_text(), "mine")
+
     def test_calibrate_raises_no_pressure_after_lost_requests(self):
         _, samples = self.check("calibrate", "requests_lost", 4)
         self.check_nothing_rises_again(samples)

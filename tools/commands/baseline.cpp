@@ -222,6 +222,7 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
 /// Checks the files of an existing baseline and repeats the comparison of its second run with its first run.
 ExitCode checked_again(BaselineOptions options) {
   const std::string folder = options.check.front();
+  if (const auto code = unreadable(folder)) return *code;
   const auto baseline = sysid::read_baseline(folder);
   if (!baseline) return fail(ExitCode::input_refused, baseline.error());
   if (baseline->second.empty())

@@ -116,7 +116,8 @@ ExitCode run(const HealthOptions& chosen) {
     std::fprintf(stderr, "softgrip: %s is skipped: %s\n", name.c_str(), skipped.why.c_str());
   }
   if (rig->fingers.empty())
-    return fail(ExitCode::input_refused, "no recording can be compared with " + options.baseline);
+    return fail(rig->incomplete() ? ExitCode::io : ExitCode::input_refused,
+                "no recording can be compared with " + options.baseline);
   const std::string json = result::json_text(health::fields_of(*rig, wall_time_now()));
   if (!options.out.empty()) {
     if (const auto written = write_results(options.out, *rig, json); !written)
@@ -128,6 +129,7 @@ ExitCode run(const HealthOptions& chosen) {
     for (const health::JudgedFinger& finger : rig->fingers) print(finger);
     for (const std::string& warning : health::warnings_of(*rig)) std::printf("%s\n", warning.c_str());
   }
+  if (rig->incomplete()) return ExitCode::io;
   return rig->alarm() ? ExitCode::not_acceptable : ExitCode::done;
 }
 

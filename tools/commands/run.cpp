@@ -11,6 +11,7 @@
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
 #include "daemon/socket/status_json.h"
+#include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"
 #include "tools/client/set_option.h"
@@ -91,10 +92,25 @@ ExitCode no_sequence_file(const std::string& sequence, const std::string& why) {
   return fail(ExitCode::io, message);
 }
 
+/// Returns an exit code if softgripd listens on the socket of the rig, else nullopt. A simulated board can
+/// run beside softgripd if `run` opens no socket.
+std::optional<ExitCode> refuse_beside_daemon(const RunOptions& options, const rig::RigFile& rig) {
+  const bool simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
+  if (options.virtual_time || (simulated && options.no_socket) || rig.socket.path.empty())
+    return std::nullopt;
+  if (!daemon_runs(rig.socket.path)) return std::nullopt;
+  daemon::Outcome outcome;
+  outcome.ending = daemon::Ending::board_taken;
+  fail(ExitCode::state_refused, stop_the_daemon);
+  report(options, outcome, {});
+  return ExitCode::state_refused;
+}
+
 ExitCode run(const RunOptions& options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
   if (const std::string why = why_unreadable(options.sequence); !why.empty())
     return no_sequence_file(options.sequence, why);
+  if (is_folder(options.sequence)) return no_sequence_file(options.sequence, "it is a folder");
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
   auto rig = read_rig(path);
@@ -104,6 +120,7 @@ ExitCode run(const RunOptions& options) {
   auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence, *arguments);
   if (!sequence) return refuse(sequence.error());
   std::fputs((*sequence)->remarks.format().c_str(), stderr);
+  if (const auto code = refuse_beside_daemon(options, *rig)) return *code;
 
   daemon::DaemonOptions daemon_options;
   daemon_options.program = "softgrip run";

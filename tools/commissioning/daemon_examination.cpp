@@ -98,10 +98,10 @@ void judge_loop(const Json& status, const Json& statistics, Findings& findings) 
                   overruns, p99_us, json_number(json_member(loop, "wake_up"), "max_us", 0));
   if (overruns > 1e-2 * ticks) {
     findings.fail("loop", text,
-                  "cycles are missed: see the finding `scheduling`, lower rate_hz, or reduce the load of the "
-                  "processor");
+                  "cycles are missed: see the finding `scheduling of the loop`, lower rate_hz, or reduce the "
+                  "load of the processor");
   } else if (overruns > 0 || p99_us > period_us / 10) {
-    findings.warn("loop", text, "a few cycles were missed or late: see the finding `scheduling`");
+    findings.warn("loop", text, "a few cycles were missed or late: see the finding `scheduling of the loop`");
   } else {
     findings.ok("loop", text);
   }

@@ -98,7 +98,7 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   } else if (p99_us > period_us / 10 || max_us > period_us / 2) {
     findings.warn("timer", text,
                   "a wake-up was late by a large part of a cycle: see the findings `kernel` and "
-                  "`scheduling`, and check which other programs run on this computer");
+                  "`scheduling of the loop`, and check which other programs run on this computer");
   } else {
     findings.ok("timer", text);
   }

@@ -91,10 +91,8 @@ constexpr std::uint16_t usual_port = 1502;
 
 /// Reads boards, unit ids and wiring from a rig file, in the same way as softgripd.
 tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
-  if (const auto code = unreadable(path)) return tl::unexpected{*code};
-  document::Problems problems;
-  const auto rig = rig::load_rig(path, problems);
-  if (!rig) return tl::unexpected{refuse(problems)};
+  const auto rig = read_input(path, rig::load_rig);
+  if (!rig) return tl::unexpected{rig.error()};
   const auto* modbus = std::get_if<drivers::ModbusSettings>(&rig->board);
   if (modbus == nullptr) {
     return tl::unexpected{fail(ExitCode::input_refused,
@@ -121,10 +119,8 @@ tl::expected<Setup, ExitCode> setup_of_boards(const Options& options) {
   for (const std::string& board : options.boards) {
     const std::string path = board_path(board);
     if (!is_there(path)) return tl::unexpected{no_such_board(board, path)};
-    if (const auto code = unreadable(path)) return tl::unexpected{*code};
-    document::Problems problems;
-    auto map = rig::load_board_map(path, problems);
-    if (!map) return tl::unexpected{refuse(problems)};
+    auto map = read_input(path, rig::load_board_map);
+    if (!map) return tl::unexpected{map.error()};
     setup.emulator.modules.push_back({*map, static_cast<std::uint8_t>(1 + maps.size()), 0});
     maps.push_back(std::move(*map));
   }
@@ -165,11 +161,12 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
   return std::nullopt;
 }
 
-/// Returns an exit code if an input file cannot be opened, otherwise nullopt.
+/// Returns an exit code if an input file is a folder or cannot be opened, otherwise nullopt.
 std::optional<ExitCode> any_unreadable(const Options& options) {
   std::vector<std::string> files = options.models;
   if (!options.faults.empty()) files.push_back(options.faults);
   for (const std::string& file : files) {
+    if (const auto code = refuse_folder(file)) return code;
     if (const auto code = unreadable(file)) return code;
   }
   return std::nullopt;

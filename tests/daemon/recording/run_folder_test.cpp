@@ -64,6 +64,31 @@ TEST(RunFolder, AFailedCreationNamesThePath) {
   EXPECT_NE(folder.error().find("/proc/softgrip"), std::string::npos);
 }
 
+TEST(RunFolder, AFolderThatCannotBeUsedIsFoundBeforeTheRun) {
+  const ScratchFolder temporary;
+  const std::string file = temporary.path() + "/file";
+  std::ofstream(file) << "mine";
+  std::filesystem::create_symlink(temporary.path() + "/nowhere", temporary.path() + "/dangling");
+  for (const std::string& path : {file, file + "/a", file + "/a/b", temporary.path() + "/dangling",
+                                  std::string("/proc/softgrip"), std::string("/proc/softgrip/a")}) {
+    const std::string why = why_unrecordable(path);
+    EXPECT_NE(why.find("nothing can be recorded in " + path + ": "), std::string::npos) << path << why;
+    EXPECT_FALSE(RunFolder::create(path, "time_s\n", true)) << path;
+  }
+  EXPECT_EQ(text_of(file), "mine");
+}
+
+TEST(RunFolder, TheCheckOfAUsableFolderLeavesNoFolder) {
+  const ScratchFolder temporary;
+  for (const char* path : {"", "/", "/new", "/new/", "/new/inner", "/new/inner/"})
+    EXPECT_EQ(why_unrecordable(temporary.path() + path), "") << path;
+  EXPECT_EQ(why_unrecordable(""), "");
+  EXPECT_EQ(why_unrecordable("."), "");
+  EXPECT_EQ(why_unrecordable("softgrip-new-folder"), "");
+  EXPECT_FALSE(std::filesystem::exists("softgrip-new-folder"));
+  EXPECT_EQ(files_in(temporary.path()), 0U);
+}
+
 TEST(RunFolder, AFullDiskLeavesWholeLinesAndAPermanentError) {
   const ScratchFolder temporary;
   auto folder = RunFolder::create(temporary.path(), "header\n", true);

@@ -29,6 +29,17 @@ TEST(Daemon, VirtualTimeNeedsASimulatedBoard) {
   EXPECT_NE(daemon.error().text.find("simulated"), std::string::npos);
 }
 
+TEST(Daemon, AFileInPlaceOfTheRecordingFolderIsRefusedBeforeTheRun) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file(folder.path() + "/file", "mine"));
+  DaemonOptions options;
+  options.record_folder = folder.path() + "/file";
+  const auto daemon = Daemon::create(testing::example_rig("rig.yaml"), options);
+  ASSERT_FALSE(daemon);
+  EXPECT_EQ(daemon.error().code, ExitCode::io);
+  EXPECT_NE(daemon.error().text.find("Not a directory"), std::string::npos) << daemon.error().text;
+}
+
 TEST(Daemon, RunsASequenceAndReportsItsResult) {
   rig::RigFile rig = testing::example_rig("rig.yaml");
   rig.recorder.mode = rig::RecorderSettings::Mode::off;

@@ -71,6 +71,7 @@ TEST_F(Recorded, FingerUsesAnOwnBaselineOrTheRigBaseline) {
 
 TEST_F(Recorded, ExistingScoresAreKeptWithoutReadingRecordings) {
   write("recordings/one/run.csv", rows("left", 20));
+  write("recordings/one/run.json", R"({"started_at": "2026-11-30T07:00:00Z", "state": "complete"})");
   const auto first = recorded_health(question());
   ASSERT_TRUE(first);
   write("recordings/one/run.csv", "");
@@ -135,6 +136,25 @@ TEST_F(Recorded, AnEmptyFolderIsReported) {
   EXPECT_TRUE(found->fingers.empty());
   ASSERT_EQ(found->skipped.size(), 1U);
   EXPECT_EQ(found->skipped[0].why, "the folder contains no recordings");
+  EXPECT_FALSE(found->incomplete());
+}
+
+TEST_F(Recorded, APathThatCannotBeReadMakesTheResultIncomplete) {
+  write("recordings/one/run.csv", rows("left", 20));
+  const auto complete = recorded_health(question());
+  ASSERT_TRUE(complete);
+  EXPECT_FALSE(complete->incomplete());
+  for (const std::string missing : {"missing", "baseline/model.yaml/run"}) {
+    HealthQuestion asked = question();
+    asked.recordings.push_back(at(missing));
+    const auto found = recorded_health(asked);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->fingers.size(), 1U) << "the other paths are used";
+    EXPECT_TRUE(found->incomplete());
+    ASSERT_EQ(found->skipped.size(), 1U);
+    EXPECT_EQ(found->skipped[0].run, at(missing));
+    EXPECT_EQ(found->skipped[0].why.rfind("the path cannot be read: ", 0), 0U) << found->skipped[0].why;
+  }
 }
 
 TEST_F(Recorded, ALogThatNamesNoFingerIsScored) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "base/files.h"
 #include "tests/sysid/simulated.h"
@@ -152,6 +154,52 @@ TEST_F(FoundRuns, ARecordingWithTheNameOfAnEarlierRecordingIsSkippedWithAReason)
   EXPECT_TRUE(found.runs.empty());
   ASSERT_EQ(found.skipped.size(), 1U);
   EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + second);
+}
+
+TEST_F(FoundRuns, ARunCsvBesideARunJsonIsTheRecordingOfItsFolder) {
+  const std::string first = run("1", R"({"started_at": "2026-11-30T07:00:00Z", "state": "complete"})");
+  const std::string second = run("2", "");
+  EXPECT_EQ(find_runs({first + "/run.csv", second + "/run.csv"}),
+            (std::vector<std::string>{first, second + "/run.csv"}));
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const auto base_of = [&](const std::string&) { return &base; };
+  const RunScores found = score_runs(find_runs({first + "/run.csv"}), base_of, {});
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_EQ(found.runs[0].run, "1");
+  EXPECT_EQ(found.runs[0].started_at, "2026-11-30T07:00:00Z");
+}
+
+TEST_F(FoundRuns, WithoutStartTimesADifferentLogIsASecondRecordingWithTheSameName) {
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const auto base_of = [&](const std::string&) { return &base; };
+  for (const std::string story : {"", R"({"state": "complete"})"}) {
+    const std::string name = story.empty() ? "log" : "virtual";
+    const std::string first = run("one/" + name, story), copy = run("copy/" + name, story);
+    const std::string second = run("two/" + name, story);
+    std::string csv = *read_file(second + "/run.csv", 1'000'000);
+    csv.replace(csv.rfind("0.1\n"), 3, "0.2");
+    ASSERT_TRUE(write_file(second + "/run.csv", csv));
+    std::string scores;
+    for (const ScoredRun& scored : score_runs({first}, base_of, {}).runs) scores += line_of(scored);
+    const RunScores found = score_runs({first, copy, second}, base_of, read_scores(scores));
+    EXPECT_TRUE(found.runs.empty());
+    ASSERT_EQ(found.skipped.size(), 1U) << "an equal log is the same recording";
+    EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + second);
+  }
+}
+
+TEST_F(FoundRuns, ALineWithoutAHashIsTheScoreOfEachRecordingWithItsName) {
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const auto base_of = [&](const std::string&) { return &base; };
+  const std::string path = run("log", "");
+  RunScores earlier = score_runs({path}, base_of, {});
+  ASSERT_EQ(earlier.runs.size(), 1U);
+  EXPECT_EQ(earlier.runs[0].log_hash.size(), 12U);
+  earlier.runs[0].log_hash = "";
+  EXPECT_EQ(line_of(earlier.runs[0]).find("log_hash"), std::string::npos);
+  const RunScores found = score_runs({path}, base_of, earlier.runs);
+  EXPECT_TRUE(found.runs.empty());
+  EXPECT_TRUE(found.skipped.empty());
 }
 
 TEST_F(FoundRuns, ASeparatorAtTheEndOfAPathDoesNotChangeTheName) {

@@ -96,6 +96,40 @@ TEST(PlausibilityWarnings, UnitWarningStatesColumnAndOption) {
   }
 }
 
+/// Every warning about the unit of a length, an angle, a temperature or a time must state the option and the
+/// header that correct the unit.
+TEST(PlausibilityWarnings, EachWarningAboutAUnitStatesTheOption) {
+  const Log good = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0, 7);
+  const auto warnings = [&](auto change) {
+    Log log = good;
+    change(log);
+    return all_of(plausibility_warnings(log));
+  };
+  const auto scaled = [](std::vector<double>& values, double factor) {
+    for (double& value : values) value *= factor;
+  };
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"displacement=m", warnings([&](Log& log) { scaled(log.displacement_mm, 1e-3); })},
+      {"displacement=um", warnings([&](Log& log) { scaled(log.displacement_mm, 1e3); })},
+      {"displacement=rad", warnings([&](Log& log) {
+         log.output_unit = model::OutputUnit::deg;
+         scaled(log.displacement_mm, 1.0 / 57);
+       })},
+      {"displacement=deg", warnings([&](Log& log) {
+         log.output_unit = model::OutputUnit::deg;
+         scaled(log.displacement_mm, 57);
+       })},
+      {"temperature=K", warnings([](Log& log) { log.temperature_c.assign(log.size(), 293); })},
+      {"time=ms", warnings([&](Log& log) { scaled(log.time_s, 1e3); })},
+      {"time=h", warnings([&](Log& log) { scaled(log.time_s, 1.0 / 3600); })}};
+  for (const auto& [setting, text] : cases) {
+    const std::string unit = setting.substr(setting.find('=') + 1);
+    EXPECT_NE(text.find("`softgrip import --unit " + setting + "`, or `(" + unit + ")` in the header"),
+              std::string::npos)
+        << setting << ": " << text;
+  }
+}
+
 TEST(PlausibilityWarnings, CorrectLogsGiveNoWarning) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     std::vector<Log> logs;

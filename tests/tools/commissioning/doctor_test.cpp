@@ -445,6 +445,24 @@ TEST(ExamineDaemon, DerivesTheVerdictFromStatusAndStatistics) {
             Verdict::warn);
 }
 
+TEST(ExamineDaemon, MissedCyclesReferToAFindingOfTheDoctor) {
+  auto statistics = healthy_statistics();
+  for (const int overruns : {3, 300}) {
+    statistics["loop"]["slips_took_long"] = overruns;
+    auto status = healthy_status();
+    status["real_time"]["steps"].push_back(
+        {{"name", "scheduling of the loop"}, {"outcome", "verified"}, {"detail", "SCHED_FIFO 70"}});
+    Findings findings;
+    examine_daemon(status, statistics, "bench", findings);
+    const auto loop = std::ranges::find(findings.list(), "loop", &Finding::name);
+    ASSERT_NE(loop, findings.list().end());
+    const std::size_t begin = loop->advice.find('`');
+    ASSERT_NE(begin, std::string::npos) << loop->advice;
+    const std::string name = loop->advice.substr(begin + 1, loop->advice.find('`', begin + 1) - begin - 1);
+    EXPECT_NE(std::ranges::find(findings.list(), name, &Finding::name), findings.list().end()) << name;
+  }
+}
+
 /// Returns the finding with this name that a daemon with the given channel causes; an empty finding if there
 /// is no such finding.
 Finding finding_of(const std::string& name, const nlohmann::ordered_json& channel,
