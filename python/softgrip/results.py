@@ -161,7 +161,7 @@ class Validation(_Reported):
 @dataclasses.dataclass(frozen=True)
 class Cause:
     """A cause that a diagnosis names. In a `Change`, the error reduction is NaN, and the parameters contain the size of
-    the change."""
+    the change. The error reduction is also NaN if only one-step predictions in a closed loop show the cause."""
 
     id: str
     title: str

@@ -102,6 +102,16 @@ class Investigation(bench.BenchTest):
                 self.check(self.investigated("--rig-command", shlex.join([sys.executable, str(player)]), "--yes"),
                            "not_as_asked", why)
 
+    def test_a_log_of_an_earlier_investigation_is_no_measurement(self):
+        change = "lambda rows: [(t, min(p, 30.0)) for t, p in rows]"
+        player = self.write("player.py", PLAYER.replace("CHANGE", change).replace(
+            "SOFTGRIP", repr(str(bench.SOFTGRIP))).replace("MODEL", repr(FINGER)))
+        self.investigated("--rig-command", shlex.join([sys.executable, str(player)]), "--yes")
+        self.assertTrue((self.folder / "found/step_1/log.csv").is_file())
+        told = self.investigated("--rig-command", "true", "--yes", expect=1)
+        self.assertEqual(told["end"], "failed", told)
+        self.assertRegex(told["why"], r"log\.csv")
+
 
 if __name__ == "__main__":
     bench.main()

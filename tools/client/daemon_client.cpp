@@ -11,7 +11,7 @@
 
 #include "base/json.h"
 #include "base/net/listener.h"
-#include "tools/client/daemon_text.h"
+#include "tools/command_line/command.h"
 
 namespace softgrip::tools {
 namespace {
@@ -67,10 +67,10 @@ namespace {
 ClientFailure failure_of(const Json& error) {
   const std::string code = error.value("code", "");
   const std::string message =
-      escape_control_characters(error.value("message", "the daemon gave no reason for the refusal"));
+      visible_lines(error.value("message", "the daemon gave no reason for the refusal"));
   if (code == "sequence_refused") {
     return {ExitCode::input_refused,
-            escape_control_characters(message + problem_list(error.value("problems", Json::array())))};
+            visible_lines(message + problem_list(error.value("problems", Json::array())))};
   }
   if (code == "too_long") return {ExitCode::input_refused, message};
   if (code == "refused") {

@@ -71,10 +71,6 @@ struct StatusParts {
 /// has a time of day, the line begins with local time: "2026-11-21 09:32:05.123  warning  ...".
 [[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
 
-/// Replaces the control characters in each line of a text by visible characters, so that a terminal does not
-/// execute them.
-[[nodiscard]] std::string escape_control_characters(std::string_view text);
-
 /// Formats the response to an acknowledgement: "acknowledged F202 reading_out_of_range of left; nothing moves
 /// until the next start".
 [[nodiscard]] std::string sentence_of_acknowledged(const nlohmann::ordered_json& result);

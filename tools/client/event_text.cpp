@@ -43,18 +43,6 @@ std::string line_of_event(const nlohmann::ordered_json& event) {
   return time + " s  " + text;
 }
 
-std::string escape_control_characters(std::string_view text) {
-  constexpr std::size_t longest_line = 2000;
-  std::string shown;
-  while (!text.empty()) {
-    const std::size_t length = std::min(text.find('\n'), text.size());
-    if (!shown.empty()) shown += '\n';
-    shown += document::shown(text.substr(0, length), longest_line);
-    text.remove_prefix(std::min(length + 1, text.size()));
-  }
-  return shown;
-}
-
 std::string sentence_of_acknowledged(const nlohmann::ordered_json& result) {
   constexpr std::size_t longest_name = 100;
   const auto fault = result.find("acknowledged");

@@ -1,7 +1,10 @@
 #include "tools/command_line/command.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -9,9 +12,18 @@
 
 namespace softgrip::tools {
 
+std::string visible_lines(std::string_view text) {
+  std::string lines;
+  for (std::size_t begin = 0, end = 0; begin <= text.size(); begin = end + 1) {
+    end = std::min(text.find('\n', begin), text.size());
+    if (begin > 0) lines += '\n';
+    lines += document::shown(text.substr(begin, end - begin), text.size());
+  }
+  return lines;
+}
+
 ExitCode fail(ExitCode code, std::string_view message) {
-  std::fprintf(stderr, "%s: %.*s\n", program_invocation_short_name, static_cast<int>(message.size()),
-               message.data());
+  std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, visible_lines(message).c_str());
   return code;
 }
 

@@ -27,8 +27,12 @@ namespace softgrip::tools {
 
 using AddCommand = void (*)(CLI::App& program, ExitCode& outcome);
 
+/// Returns a text that a terminal can show: document::shown() replaces the control characters of each line,
+/// and the line breaks stay.
+[[nodiscard]] std::string visible_lines(std::string_view text);
+
 /// Prints "PROGRAM: message" to the standard error and returns `code`, so that a command ends with `return
-/// fail(ExitCode::io, ...)`.
+/// fail(ExitCode::io, ...)`. Prints the message as visible_lines().
 ExitCode fail(ExitCode code, std::string_view message);
 
 /// Prints all problems of the inputs to the standard error, each with its location, and then the number of

@@ -4,14 +4,17 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "base/version.h"
 #include "document/problem.h"
+#include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
@@ -100,7 +103,10 @@ int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char
                  hint.c_str());
     return usage;
   }
-  if (program.exit(error) == 0) return 0;
+  std::ostringstream message;
+  const int code = program.exit(error, std::cout, message);
+  std::fputs(visible_lines(message.str()).c_str(), stderr);
+  if (code == 0) return 0;
   const CLI::App& command = innermost(program);
   for (const std::string& word : program.remaining(true)) {
     const std::string option = word.substr(0, word.find('='));

@@ -16,6 +16,7 @@
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/report/report_sections.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
+#include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
@@ -73,9 +74,14 @@ Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOption
 }
 
 void print_cause(const sysid::NamedCause& named) {
-  std::printf("  %-26s held-out error reduction %s %% (95 %%: %s to %s)\n",
-              std::string(named.cause.id).c_str(), fixed(named.gain_percent.value, 1).c_str(),
-              fixed(named.gain_percent.lower, 1).c_str(), fixed(named.gain_percent.upper, 1).c_str());
+  if (named.only_in_loop) {
+    std::printf("  %-26s found from one-step predictions; held-out error reduction not measured\n",
+                std::string(named.cause.id).c_str());
+  } else {
+    std::printf("  %-26s held-out error reduction %s %% (95 %%: %s to %s)\n",
+                std::string(named.cause.id).c_str(), fixed(named.gain_percent.value, 1).c_str(),
+                fixed(named.gain_percent.lower, 1).c_str(), fixed(named.gain_percent.upper, 1).c_str());
+  }
   std::size_t undetermined = 0;
   for (const sysid::CauseParameter& p : named.parameters) {
     // If a cause has many parameters, print only those that the logs determine.
@@ -108,7 +114,11 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
     std::puts("  Valve, from command to measured pressure:");
     for (const sysid::NamedCause& named : d.in_valve->named) print_cause(named);
   }
-  if (!d.partial.empty()) std::puts("  Partial explanations, too small to be reported as the cause:");
+  if (!d.partial.empty())
+    std::puts(d.loop_bands_kpa
+                  ? "  Explanations from simulations, not reported as the cause, because the test "
+                    "of the closed loop shows that the valve sticks:"
+                  : "  Partial explanations, too small to be reported as the cause:");
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
   if (const auto& nulls = d.null_calibration) {
     std::printf(
@@ -116,13 +126,13 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
         "error reduction: %s\n",
         nulls->campaigns, nulls->named, significant(nulls->p_value, 2).c_str());
   }
-  for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),
-              (std::filesystem::path(out) / "report.html").c_str());
+  for (const std::string& warning : d.warnings) std::printf("warning: %s\n", visible_lines(warning).c_str());
+  const std::string page = (std::filesystem::path(out) / "report.html").string();
+  std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(), visible_lines(page).c_str());
 }
 
 void print_comparison(const sysid::Diagnosis& d) {
-  std::printf("\n%s", sysid::text_of(sysid::run_table(d)).c_str());
+  std::printf("\n%s", visible_lines(sysid::text_of(sysid::run_table(d))).c_str());
   for (const sysid::Table& table : sysid::candidate_tables(d))
     std::printf("\n%s", sysid::text_of(table).c_str());
   for (const auto& [id, recording] : d.not_tested)
@@ -227,7 +237,7 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
   } else {
     print_summary(*result, options.out);
     if (options.explain) print_comparison(*result);
-    std::fputs(on_screen(text_of(consequences, options.out)).c_str(), stdout);
+    std::fputs(on_screen(visible_lines(text_of(consequences, options.out))).c_str(), stdout);
   }
   return ExitCode::done;
 }

@@ -33,18 +33,17 @@ void print_verification_json(const Verification& v) {
   std::printf("%s\n", json_dump(json, 2).c_str());
 }
 
-void print_verification(const Verification& v, const std::string& folder) {
+std::string text_of(const Verification& v, const std::string& folder) {
+  std::string text;
   if (v.reported_by != v.recomputed_by)
-    std::printf("reported by %s, recomputed by %s\n", v.reported_by.c_str(), v.recomputed_by.c_str());
+    text += "reported by " + v.reported_by + ", recomputed by " + v.recomputed_by + "\n";
   for (const Difference& d : v.comparison.differences)
-    std::printf("  %s: reported %s, recomputed %s\n", d.where.c_str(), d.reported.c_str(),
-                d.recomputed.c_str());
-  if (v.comparison.differences.empty()) {
-    std::printf("%s: all %zu numbers of the report are reproduced\n", folder.c_str(), v.comparison.numbers);
-  } else {
-    std::printf("%s: of %zu numbers, the %zu numbers above differ from the report\n", folder.c_str(),
-                v.comparison.numbers, v.comparison.differences.size());
-  }
+    text += "  " + d.where + ": reported " + d.reported + ", recomputed " + d.recomputed + "\n";
+  const std::string numbers = std::to_string(v.comparison.numbers);
+  if (v.comparison.differences.empty())
+    return text + folder + ": all " + numbers + " numbers of the report are reproduced\n";
+  return text + folder + ": of " + numbers + " numbers, the " +
+         std::to_string(v.comparison.differences.size()) + " numbers above differ from the report\n";
 }
 
 ExitCode run(const ReportOptions& options) {
@@ -54,7 +53,7 @@ ExitCode run(const ReportOptions& options) {
     for (const std::string& sentence : v.missing) fail(ExitCode::input_refused, sentence);
     return ExitCode::input_refused;
   }
-  if (!options.json) print_verification(v, options.folder);
+  if (!options.json) std::fputs(visible_lines(text_of(v, options.folder)).c_str(), stdout);
   return v.comparison.differences.empty() ? ExitCode::done : ExitCode::not_acceptable;
 }
 

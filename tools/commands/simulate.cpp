@@ -11,6 +11,7 @@
 #include "base/json.h"
 #include "base/numbers.h"
 #include "sysid/logs/simulated_log.h"
+#include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
@@ -83,10 +84,11 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
     std::fprintf(stream, "%s\n", json_dump(json).c_str());
     return;
   }
-  std::fprintf(stream, "%s, response to %s: %zu samples, %s s, span %s %s, noise %s %s, seed %s -> %s\n",
-               model.name.c_str(), options.input.c_str(), log.size(), significant(duration_s).c_str(),
-               significant(span_mm).c_str(), unit.c_str(), significant(options.settings.noise_mm).c_str(),
-               unit.c_str(), std::to_string(options.settings.seed).c_str(), options.out.c_str());
+  const std::string text = model.name + ", response to " + options.input + ": " + std::to_string(log.size()) +
+                           " samples, " + significant(duration_s) + " s, span " + significant(span_mm) + " " +
+                           unit + ", noise " + significant(options.settings.noise_mm) + " " + unit +
+                           ", seed " + std::to_string(options.settings.seed) + " -> " + options.out;
+  std::fprintf(stream, "%s\n", visible_lines(text).c_str());
 }
 
 ExitCode run(const SimulateOptions& options) {

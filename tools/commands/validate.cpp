@@ -12,6 +12,7 @@
 #include "sysid/identification/validate.h"
 #include "sysid/instrument/identified_logs.h"
 #include "tools/client/styled_line.h"
+#include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
@@ -56,12 +57,13 @@ void print_summary(const sysid::Validation& v) {
   const ViewStyle style{uncut, wants_colour(), false};
   const bool failed = !std::all_of(v.scores.begin(), v.scores.end(),
                                    [&](const sysid::Score& s) { return is_acceptable(v, s); });
-  std::printf("%s\n\n", Line(style).add(verdict_of(v), failed ? Tone::bad : Tone::plain).text().c_str());
+  std::printf("%s\n\n",
+              Line(style).add(visible_lines(verdict_of(v)), failed ? Tone::bad : Tone::plain).text().c_str());
   for (const sysid::Score& s : v.scores) {
     const Tone tone = is_acceptable(v, s) ? Tone::plain : Tone::bad;
-    std::printf("%s\n", Line(style).add(summary_line(v, s), tone).text().c_str());
+    std::printf("%s\n", Line(style).add(visible_lines(summary_line(v, s)), tone).text().c_str());
   }
-  for (const std::string& warning : v.warnings) std::printf("warning: %s\n", warning.c_str());
+  for (const std::string& warning : v.warnings) std::printf("warning: %s\n", visible_lines(warning).c_str());
 }
 
 ExitCode run(const ValidateOptions& options, const std::vector<std::string>& call) {

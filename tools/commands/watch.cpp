@@ -177,7 +177,7 @@ void LiveWatch::take_answer(const Json& request, const Json& line) {
     return;
   }
   state_.message = result ? Span{done_of(request, *result), Tone::good}
-                          : Span{escape_control_characters(result.error().message), Tone::bad};
+                          : Span{visible_lines(result.error().message), Tone::bad};
   events_due_s_ = 0;
 }
 

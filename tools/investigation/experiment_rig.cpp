@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 #include <variant>
 
 #include "base/exit_code.h"
@@ -55,9 +56,13 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
   return std::move(campaign.logs.front());
 }
 
-/// Runs `command IN OUT` in a shell and waits until it ends.
+/// Runs `command IN OUT` in a shell and waits until it ends. Removes an existing file OUT before, so that a
+/// result of an earlier call cannot be read as the result of this call.
 tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
                                    const std::string& out) {
+  std::error_code error;
+  fs::remove(out, error);
+  if (error) return failed("cannot remove the earlier result " + out + ": " + error.message());
   std::fflush(nullptr);
   const int status = std::system((command + " " + shell_word(in) + " " + shell_word(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);

@@ -75,7 +75,7 @@ using Consent = std::function<bool(const std::string& what)>;
 
 /// Returns a player that runs `COMMAND COMMAND_CSV LOG_OUT`, where COMMAND is `command`. The file COMMAND_CSV
 /// has the columns time_s and pressure_command_kpa, with one row per `interval_s`. The command must write a
-/// log to LOG_OUT.
+/// log to LOG_OUT. An earlier file LOG_OUT is removed before the call.
 [[nodiscard]] Player command_player(std::string command, double interval_s, Consent consent);
 
 /// Returns a function that checks the sensor of a simulated rig. The function applies known lengths to the
@@ -84,7 +84,7 @@ using Consent = std::function<bool(const std::string& what)>;
 [[nodiscard]] GaugeTaker simulated_gauge(ExperimentRig rig);
 
 /// Returns a function that checks a sensor. The function runs `COMMAND POSITIONS_CSV GAUGE_OUT`, where
-/// COMMAND is `command`, and reads the file GAUGE_OUT.
+/// COMMAND is `command`, and reads the file GAUGE_OUT. An earlier file GAUGE_OUT is removed before the call.
 [[nodiscard]] GaugeTaker command_gauge(std::string command, Consent consent);
 
 /// Writes the readings to `folder`/gauge.csv, and reads this file in the same way as a gauge file of a user.

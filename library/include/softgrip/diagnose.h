@@ -24,7 +24,8 @@ struct Cause {
   std::string id;     ///< id of the cause, for example "valve_deadband"; the reference page "causes" lists
                       ///< all ids
   std::string title;  ///< name of the cause in words
-  /// Reduction of the held-out error by the cause [%]. In a Change, this value is NaN.
+  /// Reduction of the held-out error by the cause [%]. The value is NaN in a Change, and if only one-step
+  /// predictions in a closed loop show the cause.
   double error_reduction_percent = 0;
   Interval error_reduction_ci95;          ///< 95 % interval of error_reduction_percent [%]
   std::vector<Estimate> parameters;       ///< estimated parameters of the cause; in a Change: the size of the

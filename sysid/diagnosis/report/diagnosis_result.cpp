@@ -10,7 +10,7 @@ namespace {
 
 using result::Fields, result::keyed, result::list_of, result::or_null, result::shown, result::Value;
 
-Fields fields_of_cause(const NamedCause& named, const Budget& budget) {
+Fields fields_of_cause(const Diagnosis& d, const NamedCause& named, const Budget& budget) {
   Fields parameters;
   for (const CauseParameter& p : named.parameters) {
     parameters.emplace_back(p.name, parameter_fields("", p));
@@ -27,6 +27,10 @@ Fields fields_of_cause(const NamedCause& named, const Budget& budget) {
   if (named.gain_kpa2) {
     fields.emplace_back("judged_by", "pressure_kpa");
     fields.emplace_back("gain_kpa2", spread_value(*named.gain_kpa2));
+  }
+  if (named.only_in_loop) {
+    fields.emplace_back("judged_by", "one_step_prediction");
+    fields.emplace_back("in_extended_model", position_of(d.extended_model, named.cause).has_value());
   }
   return fields;
 }
@@ -171,7 +175,7 @@ Fields fields_of_stick_slip(const StickSlipEvidence& stick_slip) {
 
 Fields fields_of(const Diagnosis& d) {
   const Budget budget = budget_of(d);
-  const auto of_cause = [&](const NamedCause& named) { return fields_of_cause(named, budget); };
+  const auto of_cause = [&](const NamedCause& named) { return fields_of_cause(d, named, budget); };
   const auto alternatives = [](const NamedCause& named) { return list_of(named.alternatives, &Cause::id); };
   std::vector<NamedCause> causes = d.causes;
   if (d.in_valve) causes.insert(causes.end(), d.in_valve->named.begin(), d.in_valve->named.end());

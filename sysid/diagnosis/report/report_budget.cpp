@@ -82,11 +82,13 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
   const Budget budget = budget_of(d);
   const double taken = std::max(0.0, budget.recalibrated - budget.extended);
   double one_by_one = 0;
-  for (const NamedCause& named : d.causes) one_by_one += std::max(0.0, named.gain_mm2.value);
+  for (const NamedCause& named : d.causes)
+    if (!named.only_in_loop) one_by_one += std::max(0.0, named.gain_mm2.value);
   const double scale = one_by_one > taken && one_by_one > 0 ? taken / one_by_one : 1;
   constexpr Colour colours[]{Colour::model, Colour::good, Colour::other};
   std::vector<BudgetPart> parts;
   for (const NamedCause& named : d.causes) {
+    if (named.only_in_loop) continue;
     const Spread& gain = named.gain_mm2;
     parts.push_back({std::string(named.cause.title), scale * std::max(0.0, gain.value),
                      colours[parts.size() % std::size(colours)],
@@ -95,9 +97,10 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
   const double together = taken - scale * one_by_one;
   // A part with less than 0.1 % of the total would not be visible in the bar, so it is left out.
   if (together > 1e-3 * budget.recalibrated)
-    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Explained by causes that are not reported"
-                                                        : "Explained by another model structure")
-                                      : "Explained only by the combination of several causes",
+    parts.push_back({d.causes.empty() || d.loop_bands_kpa
+                         ? (d.base.empty() ? "Explained by causes that are not reported"
+                                           : "Explained by another model structure")
+                         : "Explained only by the combination of several causes",
                      together, Colour::muted, ""});
   const double noise = std::min(budget.noise, budget.recalibrated - taken);
   parts.push_back({"Unexplained", budget.recalibrated - taken - noise, Colour::error, ""});

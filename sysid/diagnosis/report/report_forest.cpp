@@ -28,7 +28,7 @@ struct Row {
   /// Error reduction by the cause; nullptr: the reduction was not computed. An example is a cause that no
   /// command separates from the named cause.
   const Spread* gain = nullptr;
-  double inclusion = 0;
+  double inclusion = 0;  ///< NaN: not computed
 };
 
 const Spread* gain_of(const NamedCause& named, const Cause& alternative) {
@@ -43,7 +43,8 @@ const Spread* gain_of(const NamedCause& named, const Cause& alternative) {
 std::vector<Row> rows_of(const Diagnosis& d) {
   std::vector<Row> rows;
   for (const NamedCause* named : shown_causes(d)) {
-    rows.push_back({std::string(named->cause.title), false, &named->gain_percent, named->inclusion});
+    rows.push_back({std::string(named->cause.title), false,
+                    named->only_in_loop ? nullptr : &named->gain_percent, named->inclusion});
     for (const Cause& alternative : named->alternatives)
       rows.push_back({"or " + alternative_title(alternative, d.causes), true, gain_of(*named, alternative)});
   }
@@ -101,9 +102,10 @@ Figure forest_figure(const Diagnosis& d) {
     } else {
       canvas.words({number_px, y + 4}, Anchor::start, "not computed separately", Colour::muted);
     }
-    if (!row.alternative) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
+    const bool has_inclusion = !row.alternative && !std::isnan(row.inclusion);
+    if (has_inclusion) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
     std::vector<std::string> cells{
-        row.name, row.alternative ? "yes" : "no", "", "", "", row.alternative ? "" : fixed(row.inclusion, 4)};
+        row.name, row.alternative ? "yes" : "no", "", "", "", has_inclusion ? fixed(row.inclusion, 4) : ""};
     if (row.gain != nullptr) {
       cells[2] = shortest(row.gain->value);
       cells[3] = shortest(row.gain->lower);

@@ -97,8 +97,11 @@ void add_evidence(Page& page, const Diagnosis& d) {
 void add_named(Page& page, const Diagnosis& d) {
   if (!d.partial.empty())
     page.paragraph(
-        "These causes explain a part of the error, but too small a part to be reported as the cause of the "
-        "error.");
+        d.loop_bands_kpa
+            ? "These causes explain the readings in simulations. They are not reported as the "
+              "cause of the error, because the test of the closed loop shows that the valve sticks."
+            : "These causes explain a part of the error, but too small a part to be reported as "
+              "the cause of the error.");
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {
       std::string meaning(model::catalogue()[named.block_type].info.meaning);

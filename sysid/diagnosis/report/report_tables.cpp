@@ -54,6 +54,7 @@ std::string percent_range(const Spread& share, int decimals) {
 }
 
 Value spread_value(const Spread& spread, int decimals) {
+  if (std::isnan(spread.value)) return shown(Fields{{"value", Value()}, {"ci95", Value()}}, dash, true);
   const Fields fields{{"value", spread.value}, {"ci95", Value::List{spread.lower, spread.upper}}};
   return shown(fields, percent_range(spread, decimals), true);
 }

@@ -95,7 +95,7 @@ double searched_gain_percent(const SearchData& data, const StructureFit& recalib
 NullCalibration calibrate_on_nulls(const SearchData& data, const StructureFit& recalibrated,
                                    double gain_percent, const Division& division,
                                    const NullOptions& options) {
-  NullCalibration calibration;
+  NullCalibration calibration{.gain_percent = gain_percent};
   const Innovations innovations = innovations_of(recalibrated.residual_mm);
   if (innovations.samples_mm.empty()) return calibration;
   calibration.campaigns = options.campaigns;

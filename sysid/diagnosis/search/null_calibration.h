@@ -20,6 +20,7 @@ inline constexpr std::size_t enough_nulls = limits::fewest_events - 1;
 /// Results of the search on simulated campaigns without a cause. The readings of these campaigns are
 /// simulated with the refitted model.
 struct NullCalibration {
+  double gain_percent = 0;  ///< held-out error reduction on the measured data
   std::size_t campaigns = 0;
   std::size_t named = 0;            ///< number of campaigns in which the search named a cause
   double largest_gain_percent = 0;  ///< largest held-out error reduction by a cause that the search named

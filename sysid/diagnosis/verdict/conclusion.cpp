@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -73,6 +74,17 @@ void Conclusion::measure_recalibrated(const Selection& selection) {
 
 void Conclusion::measure(const Selection& selection, const Division& division) {
   measure_recalibrated(selection);
+  measure_extended(selection, division);
+}
+
+void Conclusion::calibrate(const Selection& selection, const Division& division, const NullOptions& nulls) {
+  // The drive of the simulated data is already shifted, so their searches cannot gain by a shift. d_.gain may
+  // contain the effect of the shift.
+  const Spread gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
+  d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, gain.value, division, nulls);
+}
+
+void Conclusion::measure_extended(const Selection& selection, const Division& division) {
   d_.extended = selection.extended;
   d_.unexplained_error = selection.left;
   d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
@@ -147,11 +159,36 @@ bool Conclusion::left_by_outliers(const UnexplainedError& structure) const {
          structure.excess_mm < d_.noise_mm;
 }
 
-void Conclusion::conclude(const Selection& selection) {
+void Conclusion::count_readings(const UnexplainedError& left) {
+  if (!d_.outliers.present && !d_.sampling.present) return;
+  const double left_mm2 = square(left.excess_mm);
+  const double explained_mm2 = (d_.outliers.present ? square(d_.outliers.excess_mm) : 0) +
+                               (d_.sampling.present ? square(d_.sampling.excess_mm) : 0);
+  d_.unexplained_percent = left.present ? 100 * left_mm2 / (left_mm2 + explained_mm2) : 0;
+}
+
+bool Conclusion::names_readings_alone(const Selection& selection, const Division& division) {
+  const auto is_chosen = [&](const NamedCause& named) {
+    return std::ranges::find(selection.chosen, named.cause, &ChosenCause::cause) != selection.chosen.end();
+  };
+  const auto first = std::stable_partition(causes_.begin(), causes_.end(), std::not_fn(is_chosen));
+  if (first == causes_.begin()) return false;
+  d_.causes.assign(std::make_move_iterator(causes_.begin()), std::make_move_iterator(first));
+  d_.partial.assign(std::make_move_iterator(first), std::make_move_iterator(causes_.end()));
+  const Selection alone = selection_from(selection.base, selection.base_losses, d_.noise_mm);
+  d_.extended_other_logs_rmse_mm.reset();
+  measure_extended(alone, division);
+  count_readings(alone.left);
+  d_.verdict = Verdict::partly_explained;
+  return true;
+}
+
+void Conclusion::conclude(const Selection& selection, const Division& division) {
   // If the gauge readings have replaced a named cause, the remaining error does not affect the verdict.
   const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
   const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
   const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
+  if (by_chance && !too_much_left && names_readings_alone(selection, division)) return;
   if (!selection.chosen.empty() && (too_much_left || by_chance)) {
     d_.verdict = Verdict::unexplained;
     d_.partial = std::move(causes_);
@@ -166,12 +203,7 @@ void Conclusion::conclude(const Selection& selection) {
     return;
   }
   d_.causes = std::move(causes_);
-  if ((d_.outliers.present || d_.sampling.present) && selection.chosen.empty()) {
-    const double left = square(selection.left.excess_mm);
-    const double explained = (d_.outliers.present ? square(d_.outliers.excess_mm) : 0) +
-                             (d_.sampling.present ? square(d_.sampling.excess_mm) : 0);
-    d_.unexplained_percent = selection.left.present ? 100 * left / (left + explained) : 0;
-  }
+  if (selection.chosen.empty()) count_readings(selection.left);
   if (!d_.causes.empty()) {
     d_.verdict = any_alternatives(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
     return;

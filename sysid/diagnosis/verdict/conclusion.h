@@ -45,18 +45,30 @@ class Conclusion {
   void measure_recalibrated(const Selection& selection);
   /// Writes the errors of all models and the extended model into the diagnosis.
   void measure(const Selection& selection, const Division& division);
+  /// Searches for causes in simulated data without a cause. Writes into the diagnosis how often these
+  /// searches reach the error reduction by the causes of the selection. A shift of the drive does not count.
+  void calibrate(const Selection& selection, const Division& division, const NullOptions& nulls);
   /// Describes the causes of the selection, and the causes that were found in the readings before any fit.
   void name(const Selection& selection);
   /// Returns the causes that name() has described.
   [[nodiscard]] std::vector<NamedCause>& causes() { return causes_; }
-  /// Writes the verdict into the diagnosis. Call measure() and name() first.
-  void conclude(const Selection& selection);
+  /// Writes the verdict into the diagnosis. Call measure() and name() first. If the simulated data without a
+  /// cause reject the causes of the selection, only the causes in the readings stay named.
+  void conclude(const Selection& selection, const Division& division);
   /// Writes a richer base structure into the diagnosis in place of the extended model. This includes its
   /// errors, its causes and the verdict.
   /// @param selection  causes that were selected on the given base structure.
   void adopt(BaseFindings& base, const Selection& selection);
 
  private:
+  /// Writes the extended model and its errors into the diagnosis.
+  void measure_extended(const Selection& selection, const Division& division);
+  /// Moves the causes of the selection to the partial causes, and returns true, if the selection was found by
+  /// chance and there are causes in the readings. The recalibrated model then is the extended model.
+  [[nodiscard]] bool names_readings_alone(const Selection& selection, const Division& division);
+  /// If there are outliers or repeated readings, computes the unexplained share so that it includes the error
+  /// that these readings explain.
+  void count_readings(const UnexplainedError& left);
   /// If the drive was shifted in time, recomputes the error reduction so that it includes the effect of the
   /// shift. The errors of the given and the refitted model are then the errors with the original drive.
   void count_shift(const BlockLosses& extended);

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -120,11 +122,33 @@ void reject_drift(Diagnosis& d) {
       "sensor cannot be separated from a change of the finger");
 }
 
-NamedCause sticking_valve() {
+/// Returns a valve cause that only the test of the loops has found.
+/// @param bands_kpa  dead band in each log [kPa]; the parameter of the cause is the median.
+NamedCause sticking_valve(std::vector<double> bands_kpa) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   NamedCause named;
   named.cause = *find_cause(causes::ValveDeadband::id);
   named.block_type = model::block_type<model::ValveStiction>();
+  named.parameters = {{"band_kpa", "kPa", median_of(std::span(bands_kpa)), {}, false}};
+  named.gain_percent = named.gain_mm2 = {unknown, unknown, unknown, unknown};
+  named.inclusion = unknown;
+  named.only_in_loop = true;
   return named;
+}
+
+/// Names the valve instead of the causes of the search. If the extended model contains the valve, the result
+/// of the search for the valve is kept.
+void name_sticking_valve(Diagnosis& d, std::vector<double> bands_kpa) {
+  NamedCause valve = sticking_valve(bands_kpa);
+  std::move(d.causes.begin(), d.causes.end(), std::back_inserter(d.partial));
+  const auto searched = std::ranges::find(d.partial, valve.cause, &NamedCause::cause);
+  if (searched != d.partial.end()) {
+    if (position_of(d.extended_model, valve.cause)) valve = std::move(*searched);
+    d.partial.erase(searched);
+  }
+  d.causes = {std::move(valve)};
+  d.verdict = Verdict::partly_explained;
+  d.loop_bands_kpa = std::move(bands_kpa);
 }
 
 }  // namespace
@@ -198,22 +222,18 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs,
       "The command depends on the readings (closed loop), so the command contains the noise of the readings. "
       "A simulation with this command is therefore uncertain");
   const std::vector<std::vector<double>> modelled = responses();
-  std::vector<std::string> bands;
+  std::vector<double> bands_kpa;
   for (std::size_t k = 0; k < logs.size(); ++k) {
     const auto stem = shown_stiction(logs[k].pressure_command_kpa, logs[k].displacement_mm,
                                      modelled.empty() ? std::vector<double>() : modelled[k]);
     if (!stem) return;
-    bands.push_back(significant(stem->band, 2));
+    bands_kpa.push_back(stem->band);
   }
   d.warnings.emplace_back(
       "In the closed loop, a sticking valve predicts the readings better than a valve that follows the "
       "command. The best prediction has a dead band of about " +
-      with_commas(bands) + " kPa");
-  std::erase_if(d.causes,
-                [](const NamedCause& named) { return named.cause.id == causes::ValveDeadband::id; });
-  std::move(d.causes.begin(), d.causes.end(), std::back_inserter(d.partial));
-  d.causes = {sticking_valve()};
-  d.verdict = Verdict::partly_explained;
+      with_commas(bands_kpa, [](double kpa) { return significant(kpa, 2); }) + " kPa");
+  name_sticking_valve(d, std::move(bands_kpa));
 }
 
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings) {

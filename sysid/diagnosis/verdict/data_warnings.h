@@ -52,7 +52,8 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
 ///   rest, the drift is moved from `causes` to `partial` and listed in `not_tested`.
 /// - If every log was recorded in a closed loop, a warning is added.
 /// - If, in addition, a sticking valve explains the readings of each loop best (shown_stiction()),
-///   valve_deadband is named. The causes of the search are then moved to `partial`.
+///   valve_deadband is named and `loop_bands_kpa` is set. The other causes of the search are then moved to
+///   `partial`.
 /// @param responses  returns the readings that the refitted model predicts, one value per row of each log. It
 /// is called only for closed loops. If the result is empty, the hysteresis of the model is not compared with
 /// a sticking valve.

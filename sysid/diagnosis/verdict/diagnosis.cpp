@@ -115,11 +115,11 @@ class Diagnostician {
       clock.ended("gauge");
     }
     conclusion_.measure(selection, division);
-    if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
+    if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(selection, division);
     if (d_.null_calibration) clock.ended("nulls");
     conclusion_.name(selection);
     another.add_alternatives(conclusion_.causes());
-    conclusion_.conclude(selection);
+    conclusion_.conclude(selection, division);
     clock.ended("held-out logs and intervals");
     if (options_.gauge && options_.null_campaigns == 0 && d_.verdict == Verdict::unexplained) {
       look_for_base(another, selection);
@@ -308,7 +308,7 @@ class Diagnostician {
     return selection;
   }
 
-  void calibrate(const Division& division) {
+  void calibrate(const Selection& selection, const Division& division) {
     NullOptions nulls;
     nulls.campaigns = options_.null_campaigns;
     nulls.seed = options_.seed;
@@ -318,7 +318,7 @@ class Diagnostician {
                           std::to_string(options_.null_campaigns));
       };
     }
-    d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
+    conclusion_.calibrate(selection, division, nulls);
   }
 
   const std::vector<Log>& logs_;

@@ -90,6 +90,10 @@ struct Diagnosis {
                                     ///< the lead
   std::optional<StickSlipEvidence> stick_slip;  ///< result of the test for stick-slip; set if a valve with
                                                 ///< stick-slip was found
+  /// Dead band of the sticking valve in each log [kPa], from one-step predictions of the closed loops. Set if
+  /// every log shows a sticking valve. The causes that the simulations of the search have found are then in
+  /// `partial`, although they may be in the extended model.
+  std::optional<std::vector<double>> loop_bands_kpa;
   std::optional<GaugeEvidence> gauge;  ///< result of the gauge check; set if the caller has passed gauge
                                        ///< readings
   /// Causes between the command and the measured pressure that are not in `causes`. Set if the pressure was

@@ -36,6 +36,9 @@ struct NamedCause : ChosenCause {
   /// Reduction of the mean square error of the measured pressure [kPa^2]. Not set: the cause was not found in
   /// the measured pressure.
   std::optional<Spread> gain_kpa2;
+  /// True: only one-step predictions of closed loops show the cause (loop_valve.h). Its error reductions and
+  /// its inclusion frequency were then not measured and are NaN.
+  bool only_in_loop = false;
 };
 
 /// A fitted point and the covariance of its fitted parameters.

@@ -54,6 +54,15 @@ std::string readings_sentence(const Diagnosis& d) {
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 
+/// Returns the verdict for the case that the readings are wrong and that the cause of a further error was
+/// found by chance.
+std::string readings_and_chance_sentence(const Diagnosis& d) {
+  return readings_sentence(d) +
+         " The cause of the remaining error cannot be named: in simulated data without any cause, the search "
+         "reaches the error reduction by " +
+         listed(d.partial) + ", too (p = " + significant(d.null_calibration->p_value, 2) + ").";
+}
+
 /// Returns the verdict for a valve with stick-slip. It states that the command alone does not determine the
 /// position of a sticking valve, but the readings do.
 std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
@@ -63,6 +72,22 @@ std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, c
          "held-out error only falls from " +
          before + " to " + after + ". With the jump times from the readings, the held-out error falls to " +
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
+}
+
+/// Returns the verdict for a valve that sticks in a closed loop. No held-out error of a simulation belongs to
+/// the valve. The sentence states if the extended model, which the error of a simulation describes, contains
+/// the valve.
+std::string loop_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
+  const std::string model = is_extended(d) ? "extended model" : "recalibrated model";
+  const bool contained = position_of(d.extended_model, d.causes.front().cause).has_value();
+  return "The model lacks " + listed(d.causes) +
+         ": one-step predictions in the closed loop show that the valve sticks, with a dead band of about " +
+         with_commas(*d.loop_bands_kpa, [](double kpa) { return significant(kpa, 2); }) + " kPa. The " +
+         model + (contained ? " contains a dead band" : " does not contain this dead band") +
+         "; its held-out error is " + after +
+         (is_extended(d) ? ", and the held-out error of the recalibrated model is " + before
+                         : std::string()) +
+         ".";
 }
 
 /// Returns the text that follows the named causes: ": with them the held-out error falls from 2 mm to 1 mm".
@@ -129,6 +154,9 @@ std::string sentence_of_logs(const Diagnosis& d) {
       return "The model lacks one of several causes that these logs cannot separate (" + listed(d.causes) +
              ")" + with_them(d, before, after) + ".";
     case Verdict::partly_explained:
+      if (d.loop_bands_kpa) return loop_sentence(d, before, after);
+      if (!is_extended(d) && d.null_calibration && d.null_calibration->reach_the_gain())
+        return readings_and_chance_sentence(d);
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + "; " +
              reading(d, d.unexplained_error.excess_mm) + " remains unexplained, " +
              significant(d.unexplained_error.excess_mm / d.noise_mm, 2) + " times the noise.";

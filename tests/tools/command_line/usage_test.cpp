@@ -52,6 +52,13 @@ TEST(Usage, SuggestsTheNearestCommandForAMistypedOne) {
   EXPECT_NE(said_of({"statsu", "--json"}).text.find("did you mean `status`?"), std::string::npos);
 }
 
+TEST(Usage, ControlCharactersOfAWordAreNotPrinted) {
+  const Said said = said_of({"status", "--a\x1b[2J"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_NE(said.text.find("--a\\x1b[2J"), std::string::npos) << said.text;
+  EXPECT_EQ(said.text.find('\x1b'), std::string::npos);
+}
+
 TEST(Usage, SuggestsACommandThatMovesARigOnlyIfNoOtherNameIsSimilar) {
   EXPECT_NE(said_of({"stat"}).text.find("did you mean `status`?"), std::string::npos)
       << said_of({"stat"}).text;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
+#include <string>
 #include <utility>
 
 #include "document/problem.h"
@@ -85,6 +87,48 @@ TEST(ExperimentRig, ARigThatPermitsOnlyAVacuumIsRefused) {
   EXPECT_EQ(rig.error(),
             "channel 'left' permits no pressure above 0 kPa (pressure_max_kpa: 0), but experiments raise the "
             "pressure");
+}
+
+bool agree(const std::string&) {
+  return true;
+}
+
+sysid::NextExperiment ramp() {
+  sysid::NextExperiment experiment;
+  experiment.best.emplace().waveform.corners = {{0, 0}, {2, 20}, {4, 0}};
+  return experiment;
+}
+
+TEST(ExperimentRig, ALogOfAnEarlierCallIsNoResultOfACommand) {
+  const ScratchFolder folder;
+  const std::string log = folder.path() + "/log.csv";
+  const std::string write_log = "sed 's/pressure_command_kpa/&,displacement_mm/; 2,$s/,.*/&&/' <";
+  ASSERT_TRUE(write_file(folder.path() + "/play.sh", write_log + "\"$1\" >\"$2\"\n"));
+  const auto written = command_player("sh " + folder.path() + "/play.sh", 0.02, agree)(ramp(), folder.path());
+  ASSERT_TRUE(written) << written.error().why;
+  ASSERT_TRUE(is_there(log));
+  const auto silent = command_player("true", 0.02, agree)(ramp(), folder.path());
+  ASSERT_FALSE(silent);
+  EXPECT_FALSE(silent.error().stopped);
+  EXPECT_EQ(silent.error().code, ExitCode::failed);
+  EXPECT_NE(silent.error().why.find("log.csv"), std::string::npos) << silent.error().why;
+}
+
+TEST(ExperimentRig, AGaugeFileOfAnEarlierCallIsNoResultOfACommand) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(gauge_file_of({{0, 0, 1}, {5, 5, 1}, {10, 10, 1}}, folder.path()));
+  const auto silent = command_gauge("true", agree)({0, 5, 10}, folder.path());
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().code, ExitCode::failed);
+}
+
+TEST(ExperimentRig, AnEarlierResultThatCannotBeRemovedIsAnError) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(std::filesystem::create_directories(folder.path() + "/log.csv/inner"));
+  const auto refused = command_player("true", 0.02, agree)(ramp(), folder.path());
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().why.find("cannot remove the earlier result"), std::string::npos)
+      << refused.error().why;
 }
 
 TEST(ExperimentRig, CommissioningReturnsTheExitCodeOfTheExperiment) {

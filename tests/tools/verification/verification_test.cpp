@@ -2,7 +2,9 @@
 
 #include "tools/verification/verification.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -137,6 +139,45 @@ TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
   // The value of "software" has a wrong type. The verification does not use this value, so it must succeed.
   write("report/identify.json", spoilt("/software", {1}));
   EXPECT_EQ(verified(0)["reported_by"], "");
+}
+
+bool has_control_characters(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 && c != '\n'; });
+}
+
+TEST_F(Verification, ControlCharactersOfAReportAreNotPrinted) {
+  const auto spoilt = [&](const char* key, const nlohmann::json& value) {
+    auto report = nlohmann::ordered_json::parse(read("report/identify.json"));
+    report[nlohmann::ordered_json::json_pointer(key)] = value;
+    return report.dump();
+  };
+  const std::string rest = "\x1b[2J\x07";
+  for (const auto& [key, value, code] :
+       {std::tuple<const char*, nlohmann::json, int>{"/software", "softgrip" + rest, 0},
+        {"/call", {"identify", "--data", "a" + rest}, 3},
+        {"/call/-", "--non" + rest, 3},
+        {"/logs/0/sha256", rest, 3}}) {
+    const std::string unchanged = read("report/identify.json");
+    write("report/identify.json", spoilt(key, value));
+    EXPECT_EQ(run("report --verify report"), code) << key;
+    write("report/identify.json", unchanged);
+    const std::string said = read("out.txt") + read("err.txt");
+    EXPECT_NE(said.find("\\x1b[2J\\x07"), std::string::npos) << key << ": " << said;
+    EXPECT_FALSE(has_control_characters(said)) << key << ": " << said;
+  }
+}
+
+TEST_F(Verification, ControlCharactersInTheNameOfALogAreNotPrinted) {
+  const std::string model = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
+  std::filesystem::rename(folder_ / "other.csv", folder_ / "a\x1b[2J.csv");
+  for (const char* command : {"validate --model ", "validate --at-most-percent 0 --model "}) {
+    run(command + model + " --data a*.csv");
+    EXPECT_NE(read("out.txt").find("a\\x1b[2J"), std::string::npos) << read("out.txt") << read("err.txt");
+    EXPECT_FALSE(has_control_characters(read("out.txt") + read("err.txt")));
+  }
+  EXPECT_EQ(run("simulate --model " + model + " --input a*.csv --out b.csv"), 0) << read("err.txt");
+  EXPECT_NE(read("out.txt").find("a\\x1b[2J.csv"), std::string::npos) << read("out.txt");
+  EXPECT_FALSE(has_control_characters(read("out.txt") + read("err.txt")));
 }
 
 using Json = nlohmann::ordered_json;

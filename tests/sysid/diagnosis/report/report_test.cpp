@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <regex>
 #include <string>
 #include <vector>
@@ -147,6 +148,28 @@ TEST_F(ReportTest, ForestPlotHasARowPerCauseAndAlternative) {
   EXPECT_EQ(forest.drawing->rows[1][3], "28");
   EXPECT_NE(forest.drawing->markup.find("38.0 (28.0 to 48.0)"), std::string::npos);
   EXPECT_NE(forest.drawing->markup.find("0.97"), std::string::npos);
+}
+
+TEST_F(ReportTest, ValveOfAClosedLoopHasNoErrorReduction) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  diagnosis.partial = {named("valve_lag", 0.05)};
+  diagnosis.causes = {named("valve_deadband", unknown)};
+  diagnosis.causes.front().gain_percent = {unknown, unknown, unknown, unknown};
+  diagnosis.causes.front().inclusion = unknown;
+  diagnosis.causes.front().only_in_loop = true;
+  diagnosis.verdict = Verdict::partly_explained;
+  diagnosis.loop_bands_kpa = {2.7};
+  const Figure forest = forest_figure(diagnosis);
+  ASSERT_EQ(forest.drawing->rows.size(), 2U);
+  for (const std::size_t column : {2U, 3U, 4U, 5U}) EXPECT_EQ(forest.drawing->rows[0][column], "") << column;
+  const std::vector<BudgetPart> parts = budget_parts(diagnosis);
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_EQ(parts.front().name, "Explained by causes that are not reported");
+  EXPECT_NEAR(parts.front().mm2, 0.05, 1e-12);
+  const std::string html = page().to_html();
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_EQ(html.find("too small a part"), std::string::npos);
+  EXPECT_NE(html.find("the test of the closed loop shows that the valve sticks"), std::string::npos);
 }
 
 TEST_F(ReportTest, InsignificantPartialCauseIsNotInTheForestPlot) {

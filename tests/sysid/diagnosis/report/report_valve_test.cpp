@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -124,6 +125,36 @@ TEST(DiagnosisJson, ValveCauseFromMeasuredPressureIsListedInCauses) {
       << verdict_sentence(d);
   d.verdict = Verdict::unexplained;
   EXPECT_EQ(result::json_of(fields_of(d))["verdict"], "partly_explained");
+}
+
+TEST(DiagnosisJson, ValveOfAClosedLoopHasNullForValuesThatWereNotMeasured) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  Diagnosis d;
+  d.verdict = Verdict::partly_explained;
+  d.recalibrated_rmse_mm = 0.33;
+  d.extended_rmse_mm = 0.086;
+  d.loop_bands_kpa = {2.7};
+  NamedCause& valve = d.causes.emplace_back();
+  valve.cause = *find_cause(causes::ValveDeadband::id);
+  valve.block_type = model::block_type<model::ValveDeadband>();
+  valve.parameters = {{"band_kpa", "kPa", 2.7, {}, false}};
+  valve.gain_percent = valve.gain_mm2 = {unknown, unknown, unknown, unknown};
+  valve.inclusion = unknown;
+  valve.only_in_loop = true;
+  const auto json = result::json_of(fields_of(d));
+  const auto& cause = json.at("causes").at(0);
+  for (const auto* const spread :
+       {&cause.at("heldout_error_reduction_percent"), &cause.at("heldout_gain_percent"),
+        &json.at("budget").at("causes").at("valve_deadband")}) {
+    EXPECT_EQ(spread->dump(), R"({"value":null,"ci95":null})");
+  }
+  EXPECT_TRUE(cause.at("inclusion").is_null());
+  EXPECT_TRUE(cause.at("share_percent").is_null());
+  EXPECT_EQ(cause.at("parameters").at("band_kpa").dump(), R"({"value":2.7,"ci95":null})");
+  EXPECT_EQ(cause.at("judged_by"), "one_step_prediction");
+  EXPECT_EQ(cause.at("in_extended_model"), false);
+  d.extended_model.blocks.push_back({valve.block_type, {2.7}});
+  EXPECT_EQ(result::json_of(fields_of(d)).at("causes").at(0).at("in_extended_model"), true);
 }
 
 TEST(DiagnosisJson, ValveCauseWithAPressureScaleAlternativeIsAmbiguous) {

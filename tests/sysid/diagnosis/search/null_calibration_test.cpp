@@ -52,6 +52,7 @@ TEST(NullCalibration, NoNullReachesTheErrorReductionOfARealCause) {
   const double gain = gain_percent(selection.base_losses, selection.extended_losses, 1).value;
   ASSERT_GT(gain, 30);
   const NullCalibration nulls = calibrate_on_nulls(s.data, s.base, gain, s.division, options(5));
+  EXPECT_EQ(nulls.gain_percent, gain);
   EXPECT_EQ(nulls.campaigns, few);
   EXPECT_LT(nulls.largest_gain_percent, gain);
   EXPECT_DOUBLE_EQ(nulls.p_value, 1.0 / (few + 1));

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sysid/diagnosis/search/holdout.h"
 #include "tests/sysid/diagnosis/campaign.h"
+#include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::conclusion_test {
 namespace {
@@ -28,6 +30,50 @@ TEST(Conclusion, OutliersPermitAnUncorrelatedUnexplainedError) {
   EXPECT_FALSE(conclusion.leaves_too_much(selection)) << "outliers that were not found leave this error";
   selection.left.slow_correlation = 0.5;
   EXPECT_TRUE(conclusion.leaves_too_much(selection)) << "the error is correlated from sample to sample";
+}
+
+TEST(Conclusion, SimulatedDataRejectOnlyTheCausesOfTheSearch) {
+  const model::Model given = loaded("zhang2025");
+  const model::BlockSpec play{find_cause("backlash")->forms.front().type, {1.5}};
+  const std::vector<Log> logs{simulated(model::with_block(given, play), model::SignalName::tp1, 25, 0.04, 1)};
+  const SearchData data = make_search_data(make_records(logs, {}), given);
+  const Division division = divide(data.records, 8);
+  Diagnosis d;
+  d.records = data.records;
+  d.noise_mm = 0.04;
+  d.as_given = d.recalibrated = fit_structure(data.records, {}, data.given);
+  Selection selection = selection_from(d.recalibrated, losses_of(d.recalibrated, division), d.noise_mm);
+  FitPoint point = data.given;
+  point.model = model::with_block(given, play);
+  const Cause backlash = *find_cause("backlash");
+  selection.extended = fit_structure(data.records, {backlash}, point);
+  selection.extended_losses = losses_of(selection.extended, division);
+  selection.left = {};
+  selection.chosen = {chosen_cause(backlash, selection.base_losses, selection.extended_losses, 1)};
+  d.lead = ReadingLead{0.15, {0.14, 0.16}};
+  const DiagnosisOptions options;
+  Conclusion conclusion(logs, given, options, data, d);
+  conclusion.drive_is_shifted({9, BlockLosses(selection.base_losses.size(), 4), selection.base_losses});
+  conclusion.measure(selection, division);
+  NullOptions nulls;
+  nulls.campaigns = 1;
+  conclusion.calibrate(selection, division, nulls);
+  const double searched = gain_percent(selection.base_losses, selection.extended_losses, 1).value;
+  EXPECT_DOUBLE_EQ(d.null_calibration->gain_percent, searched) << "a shift of the drive does not count";
+  EXPECT_GT(d.gain.value, searched + 1) << "the reduction of the diagnosis includes the shift of the drive";
+  d.null_calibration = NullCalibration{.campaigns = 19, .named = 19, .p_value = 0.5};
+  conclusion.name(selection);
+  conclusion.conclude(selection, division);
+  ASSERT_EQ(d.causes.size(), 1U);
+  EXPECT_EQ(d.causes.front().cause.id, "clock_offset");
+  ASSERT_EQ(d.partial.size(), 1U);
+  EXPECT_EQ(d.partial.front().cause.id, "backlash");
+  EXPECT_EQ(d.verdict, Verdict::partly_explained);
+  EXPECT_FALSE(is_extended(d));
+  EXPECT_FALSE(position_of(d.extended_model, backlash));
+  EXPECT_DOUBLE_EQ(d.extended_rmse_mm, rmse_mm(selection.base_losses));
+  EXPECT_DOUBLE_EQ(d.recalibrated_rmse_mm, 2);
+  for (const RunError& run : d.runs) EXPECT_EQ(run.extended, run.recalibrated);
 }
 
 BlockLosses losses(const Division& division, double first_mm2, double other_mm2) {

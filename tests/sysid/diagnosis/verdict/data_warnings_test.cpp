@@ -102,6 +102,32 @@ TEST(UntestedCauses, ClosedLoopNamesAStickingValveWithItsBand) {
   ASSERT_EQ(d.warnings.size(), 2U);
   EXPECT_NE(d.warnings.back().find("dead band of about 0."), std::string::npos) << d.warnings.back();
   EXPECT_EQ(d.verdict, Verdict::partly_explained);
+  ASSERT_TRUE(d.loop_bands_kpa);
+  ASSERT_EQ(d.loop_bands_kpa->size(), 1U);
+  const NamedCause& valve = d.causes.front();
+  ASSERT_EQ(valve.parameters.size(), 1U);
+  EXPECT_EQ(valve.parameters.front().name, "band_kpa");
+  EXPECT_EQ(valve.parameters.front().value, d.loop_bands_kpa->front());
+  EXPECT_FALSE(valve.parameters.front().has_interval);
+  EXPECT_TRUE(valve.only_in_loop);
+  for (const double value : {valve.gain_percent.value, valve.gain_mm2.value, valve.inclusion})
+    EXPECT_TRUE(std::isnan(value)) << value;
+}
+
+/// If the extended model contains the valve, the error reduction that the search has measured is kept.
+TEST(UntestedCauses, ValveOfTheExtendedModelKeepsItsResult) {
+  for (const bool in_extended_model : {true, false}) {
+    Diagnosis d = with({"valve_deadband", "rate_dependent_hysteresis"});
+    d.causes.front().gain_percent.value = 31;
+    if (in_extended_model)
+      d.extended_model =
+          model::with_block({}, find_cause("valve_deadband")->forms.front().starts(Scales{})[0]);
+    correct_by_logs(d, loop(0.3, 0), no_responses);
+    EXPECT_EQ(ids(d.causes), std::vector<std::string>{"valve_deadband"});
+    EXPECT_EQ(ids(d.partial), std::vector<std::string>{"rate_dependent_hysteresis"});
+    EXPECT_EQ(d.causes.front().only_in_loop, !in_extended_model);
+    EXPECT_EQ(d.causes.front().gain_percent.value == 31, in_extended_model);
+  }
 }
 
 TEST(UntestedCauses, DisturbedClosedLoopKeepsTheNamedCauses) {

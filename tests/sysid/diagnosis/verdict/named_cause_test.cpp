@@ -144,6 +144,48 @@ TEST(VerdictSentence, ReportsAReductionOnlyIfTheErrorDecreases) {
             "which no finger has; the held-out error is 2.3 mm without and 2.5 mm with it.");
 }
 
+TEST(VerdictSentence, ValveOfAClosedLoopHasNoErrorReduction) {
+  Diagnosis d;
+  d.causes.emplace_back().cause = *find_cause("valve_deadband");
+  d.causes.front().only_in_loop = true;
+  d.partial.emplace_back().cause = *find_cause("hysteresis_shape");
+  d.verdict = Verdict::partly_explained;
+  d.loop_bands_kpa = {2.7};
+  d.noise_mm = 0.08;
+  d.recalibrated_rmse_mm = 0.33;
+  d.extended_rmse_mm = 0.086;
+  d.extended.causes = {d.partial.front().cause};
+  const std::string found =
+      "The model lacks valve dead band: one-step predictions in the closed loop show that the valve sticks, "
+      "with a dead band of about 2.7 kPa. ";
+  EXPECT_EQ(verdict_sentence(d),
+            found +
+                "The extended model does not contain this dead band; its held-out error is 0.086 mm, and the "
+                "held-out error of the recalibrated model is 0.33 mm.");
+  d.extended.causes.clear();
+  d.extended_rmse_mm = d.recalibrated_rmse_mm;
+  d.loop_bands_kpa = {2.7, 3};
+  EXPECT_EQ(verdict_sentence(d),
+            "The model lacks valve dead band: one-step predictions in the closed loop show that the valve "
+            "sticks, with a dead band of about 2.7, 3 kPa. The recalibrated model does not contain this dead "
+            "band; its held-out error is 0.33 mm.");
+}
+
+TEST(VerdictSentence, ACauseFoundByChanceIsStatedAfterTheReadings) {
+  Diagnosis d;
+  d.causes.emplace_back().cause = *find_cause("clock_offset");
+  d.partial.emplace_back().cause = *find_cause("backlash");
+  d.verdict = Verdict::partly_explained;
+  d.lead = ReadingLead{0.15, {0.14, 0.16}};
+  d.extended_rmse_mm = 0.4;
+  d.null_calibration = NullCalibration{.campaigns = 19, .named = 19, .p_value = 0.5};
+  EXPECT_EQ(verdict_sentence(d),
+            "The readings are 0.15 s ahead of their command, because the clocks of readings and commands "
+            "differ; without this clock offset the recalibrated model's error is 0.4 mm. The cause of the "
+            "remaining error cannot be named: in simulated data without any cause, the search reaches the "
+            "error reduction by backlash, too (p = 0.5).");
+}
+
 TEST(VerdictSentence, StatesBothFormsOfRepeatedReadings) {
   Diagnosis d;
   d.verdict = Verdict::cause_found;
