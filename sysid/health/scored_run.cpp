@@ -25,9 +25,11 @@ using Json = nlohmann::ordered_json;
 
 namespace fs = std::filesystem;
 
+/// Returns true if `path` is a recording. A folder that cannot be read counts as a recording, so that its
+/// reader reports the error.
 bool is_run(const fs::path& path) {
-  std::error_code ignored;
-  return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
+  std::error_code ignored, unreadable;
+  return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", unreadable) || unreadable;
 }
 
 /// Returns the folder of the recording if `path` is the run.csv of a recording, so that run.json is also
@@ -73,6 +75,10 @@ std::string skip_reason(const Recording& recording) {
   if (recording.recipe.empty() && !recording.software_version.empty())
     return "the recording does not belong to a single sequence (with `mode: sequences`, the recorder writes "
            "one recording per sequence)";
+  // After a disk error, a recording can begin during a sequence.
+  if (!recording.events.empty() &&
+      std::ranges::find(recording.events, "sequence_started", &RecordedEvent::kind) == recording.events.end())
+    return "the recording begins after the start of its sequence";
   return {};
 }
 
@@ -89,7 +95,7 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     scores.skipped.push_back({name, problems.empty() ? recording.error() : problems.list().front().message});
     return;
   }
-  const std::string hash = recording->started_at.empty() ? hash_of_log(path) : std::string();
+  const std::string hash = hash_of_log(path);
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
     ScoredRun run{recording->name, finger, recording->started_at, recording->recipe, {}, {}};

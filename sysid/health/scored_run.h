@@ -27,7 +27,7 @@ struct ScoredRun {
   GripScore score;
   /// Median temperature of the run [degC]; NaN: not recorded.
   double temperature_c = std::numeric_limits<double>::quiet_NaN();
-  /// First characters of the SHA-256 hash of the log, if the start time is not known; otherwise empty.
+  /// First characters of the SHA-256 hash of the log; empty in the lines of earlier versions.
   std::string log_hash = {};
 };
 

@@ -28,6 +28,7 @@ constexpr const char* how_to_start =
 ClientFailure cannot_connect(const std::string& path, int error) {
   switch (error) {
     case ENOENT:
+    case ENOTDIR:
       return {ExitCode::io, "no daemon is running: there is no socket " + path + "; " + how_to_start, true};
     case ECONNREFUSED:
       return {ExitCode::io, "no daemon is running: no process listens on " + path + "; " + how_to_start,

@@ -91,7 +91,8 @@ class DaemonClient {
 [[nodiscard]] bool daemon_runs(const std::string& path);
 /// Advice for a command that was refused because the daemon runs.
 inline constexpr const char* stop_the_daemon =
-    "softgripd runs and controls the board: first stop softgripd (systemctl stop softgripd)";
+    "softgripd runs and controls the board: first stop softgripd (systemctl stop softgripd), or the other "
+    "`softgrip run` that uses the socket of this rig";
 
 /// The connection of a program that never waits for the daemon. After a loss of the connection, the program
 /// connects again.

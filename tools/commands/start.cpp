@@ -190,8 +190,7 @@ ExitCode FollowedStart::run(Json request, std::uint64_t newest_event) {
   if (!accepted->contains("request"))
     return take_back({0, {ExitCode::io, "softgripd sent a malformed reply: `result.request` is missing"}});
   if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
-    std::fprintf(stderr, "softgrip: %s\n",
-                 visible_lines("warning:" + problem_list(warnings)).c_str());
+    std::fprintf(stderr, "softgrip: %s\n", visible_lines("warning:" + problem_list(warnings)).c_str());
   if (options_.wait) {
     const auto end = follow(accepted->value("request", std::uint64_t{0}), newest_event);
     return end ? *end : take_back(end.error());

@@ -116,6 +116,21 @@ TEST_F(FoundRuns, UnfinishedAndNonSequenceRunsAreSkipped) {
   EXPECT_NE(found.skipped[1].why.find("not belong to a single sequence"), std::string::npos);
 }
 
+TEST_F(FoundRuns, ARecordingThatBeginsDuringItsSequenceIsSkipped) {
+  const std::string of_sequence =
+      R"({"software_version": "1", "state": "complete", "sequence": {"name": "pick", "sha256": "0123456789"}, )";
+  const auto events = [](const std::string& kind) {
+    return R"("events": [{"time_s": 0.1, "kind": ")" + kind + R"(", "text": ""}]})";
+  };
+  (void)run("1-whole", of_sequence + events("sequence_started"));
+  (void)run("2-half", of_sequence + events("step_started"));
+  const RunScores found = scores();
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_EQ(found.runs[0].run, "1-whole");
+  ASSERT_EQ(found.skipped.size(), 1U);
+  EXPECT_EQ(found.skipped[0].why, "the recording begins after the start of its sequence");
+}
+
 TEST_F(FoundRuns, TheLogOfARecordingWithoutSequenceIsNotRead) {
   for (const std::string state : {"complete", "recording"}) {
     const std::string path =
@@ -154,6 +169,25 @@ TEST_F(FoundRuns, ARecordingWithTheNameOfAnEarlierRecordingIsSkippedWithAReason)
   EXPECT_TRUE(found.runs.empty());
   ASSERT_EQ(found.skipped.size(), 1U);
   EXPECT_EQ(found.skipped[0].why, "another recording has the same name: rename " + second);
+}
+
+TEST_F(FoundRuns, ANamesakeIsAlsoFoundIfOnlyOneStartTimeIsKnown) {
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const auto base_of = [&](const std::string&) { return &base; };
+  const std::string first = run("one/grip", R"({"started_at": "2026-11-30T07:00:00Z", "state": "complete"})");
+  const RunScores earlier = score_runs({first}, base_of, {});
+  const std::string second = run("two/grip", "");
+  ASSERT_TRUE(write_file(second + "/run.csv",
+                         read_file(second + "/run.csv", largest_health_file).value() + "2.0,left,20,0.2\n"));
+  const RunScores found = score_runs({second}, base_of, earlier.runs);
+  EXPECT_TRUE(found.runs.empty());
+  ASSERT_EQ(found.skipped.size(), 1U);
+}
+
+TEST_F(FoundRuns, AFolderThatCannotBeReadIsARecording) {
+  std::filesystem::create_directories(folder / "loop");
+  std::filesystem::create_symlink("run.csv", folder / "loop/run.csv");  // a loop, which gives ELOOP
+  EXPECT_EQ(find_runs({folder.string()}), std::vector<std::string>{(folder / "loop").string()});
 }
 
 TEST_F(FoundRuns, ARunCsvBesideARunJsonIsTheRecordingOfItsFolder) {
