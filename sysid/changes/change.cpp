@@ -13,7 +13,6 @@
 #include "sysid/changes/base.h"
 #include "sysid/changes/change_judge.h"
 #include "sysid/changes/change_warnings.h"
-#include "sysid/changes/orientation.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/sampling.h"
 #include "sysid/diagnosis/residual/closed_loop.h"
@@ -251,7 +250,9 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   without_given.given.reset();
   auto diagnosis =
       diagnose_oriented(oriented(healthy, orientation), oriented(later, orientation), without_given);
-  if (diagnosis) diagnosis->warnings.insert(diagnosis->warnings.begin(), sentence_of(orientation));
+  if (!diagnosis) return diagnosis;
+  diagnosis->orientation = orientation;
+  diagnosis->warnings.insert(diagnosis->warnings.begin(), sentence_of(orientation));
   return diagnosis;
 }
 

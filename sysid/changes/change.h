@@ -15,6 +15,7 @@
 #include "model/model.h"
 #include "sysid/changes/change_intervals.h"
 #include "sysid/changes/effect_fit.h"
+#include "sysid/changes/orientation.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::sysid {
@@ -56,7 +57,10 @@ struct ChangeCause {
   /// cause, divided by the variance of the noise.
   double gain = 0;
   std::optional<Interval> gain_interval;  ///< 95 % interval of `gain`; empty for a cause without a fit
-  double loss_without = 0;  ///< whitened mean square without the cause; 0 for a cause without a fit
+  /// Reduction of the whitened RMS error by the cause [%], with its 95 % interval; empty for a cause without
+  /// a fit.
+  std::optional<double> reduction_percent;
+  Interval reduction_interval;
   std::vector<std::string> alternatives;  ///< ids of other causes that explain the later readings as well as
                                           ///< this cause
 
@@ -144,6 +148,8 @@ struct ChangeDiagnosis {
   /// Name of the first later log whose command no healthy log has; empty: there is none, or the verdict is
   /// ChangeVerdict::unchanged.
   std::string another_command;
+  /// Factors by which the logs were multiplied. All results refer to the multiplied logs.
+  Orientation orientation;
   std::vector<std::string> warnings;
   double wall_s = 0;
 };

@@ -250,6 +250,8 @@ class Judge {
     const Comparison spread =
         compare(paired_losses(readings, search.without, scored.fit.white), 0, options_.seed);
     cause.gain_interval = Interval{spread.lower, spread.upper};
+    cause.reduction_percent = 100 * spread.reduction;
+    cause.reduction_interval = {100 * spread.reduction_lower, 100 * spread.reduction_upper};
     std::vector<const ScoredEffect*> others;
     for (const ScoredEffect& other : all) {
       if (other.fit.fitted.effect.id != cause.id && is_alternative(search, scored, other, ties))
@@ -268,8 +270,7 @@ class Judge {
       cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
-    cause.loss_without = per_bin(readings, search.without);
-    const double excess = cause.loss_without - 1;
+    const double excess = per_bin(readings, search.without) - 1;
     cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
     return cause;
   }

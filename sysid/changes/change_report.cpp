@@ -22,13 +22,8 @@ Value interval_value(const std::optional<Interval>& interval) {
 /// Returns the reduction of the whitened RMS error by a cause [%] with its interval. Both are null for a
 /// cause without a fit.
 Fields error_reduction(const ChangeCause& cause) {
-  const auto percent = [&](double gain) {
-    return 100 * (1 - std::sqrt(std::max(0.0, 1 - gain / cause.loss_without)));
-  };
-  if (!(cause.loss_without > 0)) return {{"value", Value()}, {"ci95", Value()}};
-  std::optional<Interval> interval = cause.gain_interval;
-  if (interval) *interval = {percent(interval->lower), percent(interval->upper)};
-  return {{"value", percent(cause.gain)}, {"ci95", interval_value(interval)}};
+  if (!cause.reduction_percent) return {{"value", Value()}, {"ci95", Value()}};
+  return {{"value", *cause.reduction_percent}, {"ci95", interval_value(cause.reduction_interval)}};
 }
 
 Fields fields_of_cause(const ChangeCause& cause) {
@@ -320,6 +315,7 @@ Fields fields_of(const ChangeDiagnosis& d) {
           {"question", "change"},
           {"verdict", name_of(d.verdict)},
           {"output_unit", model::name_of(d.output_unit)},
+          {"orientation", Fields{{"pressure", d.orientation.pressure}, {"reading", d.orientation.reading}}},
           {"causes", list_of(d.causes, fields_of_cause)},
           {"alternatives", list_of(d.causes, &ChangeCause::alternatives)},
           {"noise_mm", finger.noise_mm},

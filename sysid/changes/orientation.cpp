@@ -14,6 +14,21 @@ void mirror(std::vector<double>& column, double factor) {
   for (double& value : column) value *= factor;
 }
 
+/// Returns the correlation of the readings with the commands. The mean command and the mean reading of each
+/// log are subtracted, because runs differ in their zero.
+double correlation_within(const std::vector<Log>& logs) {
+  PairSums pooled;
+  for (const Log& log : logs) {
+    PairSums sums;
+    for (std::size_t i = 0; i < log.size(); ++i)
+      sums.add(log.pressure_command_kpa[i], log.displacement_mm[i]);
+    for (std::size_t i = 0; i < log.size(); ++i)
+      pooled.add(log.pressure_command_kpa[i] - sums.x / sums.count,
+                 log.displacement_mm[i] - sums.y / sums.count);
+  }
+  return pooled.correlation();
+}
+
 }  // namespace
 
 Orientation orientation_of(const std::vector<Log>& logs) {
@@ -26,12 +41,7 @@ Orientation orientation_of(const std::vector<Log>& logs) {
   }
   Orientation orientation;
   orientation.pressure = -lowest_kpa > highest_kpa ? -1 : 1;
-  PairSums sums;
-  for (const Log& log : logs) {
-    for (std::size_t i = 0; i < log.size(); ++i)
-      sums.add(orientation.pressure * log.pressure_command_kpa[i], log.displacement_mm[i]);
-  }
-  orientation.reading = sums.correlation() < -clear_correlation ? -1 : 1;
+  orientation.reading = correlation_within(logs) * orientation.pressure < -clear_correlation ? -1 : 1;
   return orientation;
 }
 

@@ -20,7 +20,8 @@ struct Orientation {
 };
 
 /// Returns the orientation in which the pressure of largest magnitude is positive, and in which the readings
-/// rise with the command. The readings are mirrored only if they are correlated with the command.
+/// rise with the command. The readings are mirrored only if they are correlated with the command within the
+/// logs. The logs may have different zeros.
 [[nodiscard]] Orientation orientation_of(const std::vector<Log>& logs);
 /// Returns the logs with mirrored pressures and readings.
 [[nodiscard]] std::vector<Log> oriented(std::vector<Log> logs, const Orientation& orientation);

@@ -2,12 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "base/statistics.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
+namespace {
+
+double reduction_of(double worse, double better) {
+  return worse > 0 ? 1 - std::sqrt(better / worse) : 0;
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
 
 void PairedLosses::begin_block() {
   for (std::vector<double>* const list : {&worse, &better, &rows}) list->push_back(0);
@@ -29,23 +41,25 @@ Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t s
   constexpr std::size_t draws = limits::bootstrap_draws;
   std::mt19937_64 random(seed);
   std::exponential_distribution<double> weight(1);
-  std::vector<double> differences(draws);
-  for (double& difference : differences) {
-    double sum = 0, rows = 0;
+  std::vector<double> differences(draws), reductions(draws);
+  for (std::size_t draw = 0; draw < draws; ++draw) {
+    double worse = 0, better = 0, rows = 0;
     for (std::size_t i = 0; i < losses.rows.size(); ++i) {
       const double w = weight(random);
-      sum += w * (losses.worse[i] - losses.better[i]);
+      worse += w * losses.worse[i];
+      better += w * losses.better[i];
       rows += w * losses.rows[i];
     }
-    difference = rows > 0 ? sum / rows : 0;
+    differences[draw] = rows > 0 ? (worse - better) / rows : 0;
+    reductions[draw] = reduction_of(worse, better);
   }
   std::sort(differences.begin(), differences.end());
+  std::sort(reductions.begin(), reductions.end());
   const auto wins = differences.end() - std::upper_bound(differences.begin(), differences.end(), tolerance);
-  const auto at = [&](double share) {
-    return differences[static_cast<std::size_t>(share * static_cast<double>(draws - 1))];
-  };
-  return {static_cast<double>(wins) / static_cast<double>(draws), at((1 - limits::probability) / 2),
-          at((1 + limits::probability) / 2)};
+  const auto low = static_cast<std::size_t>((1 - limits::probability) / 2 * static_cast<double>(draws - 1));
+  const auto high = static_cast<std::size_t>((1 + limits::probability) / 2 * static_cast<double>(draws - 1));
+  return {static_cast<double>(wins) / static_cast<double>(draws),    differences[low], differences[high],
+          reduction_of(sum_of(losses.worse), sum_of(losses.better)), reductions[low],  reductions[high]};
 }
 
 bool is_better(const Comparison& comparison) {

@@ -31,6 +31,9 @@ struct Comparison {
   /// the tolerance.
   double share = 0;
   double lower = 0, upper = 0;  ///< 95 % interval of the loss difference (`worse` minus `better`) per row
+  /// Reduction of the root of the loss, 1 - sqrt(better / worse), and its 95 % interval. All are 0 if the
+  /// loss of `worse` is 0.
+  double reduction = 0, reduction_lower = 0, reduction_upper = 0;
 };
 
 /// Compares the mean losses per row of two hypotheses by a Bayesian bootstrap over the blocks (Rubin, Annals

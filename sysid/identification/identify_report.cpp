@@ -184,7 +184,7 @@ void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit uni
       "a different fifth of " +
       std::to_string(s.blocks) +
       " interleaved blocks. The structures were compared by their errors on the omitted blocks. The simplest "
-      "structure was chosen whose error is at most one standard error above the smallest error. Extensions "
+      "structure was chosen whose error is not significantly larger than the smallest error. Extensions "
       "of this structure were tried, and were added if they reduced the error significantly.");
   Table tried{"Tested structures, the simplest structure first",
               {"structure", "", fitted, held_out},

@@ -26,18 +26,6 @@ double length_of(const std::vector<Record>& records) {
   return length_s;
 }
 
-/// Removes the blocks without readings. Their error is unknown, so they must not count as blocks with the
-/// error 0. If no block has readings, all blocks remain, because a division has at least one block.
-void remove_unread_blocks(const std::vector<Record>& records, Division& division) {
-  const auto is_read = [&](const Block& block) {
-    const std::vector<double>& reading_mm = records[block.record].reading_mm;
-    const auto at = [&](std::size_t i) { return reading_mm.begin() + static_cast<std::ptrdiff_t>(i); };
-    return std::any_of(at(block.first), at(block.last), [](double y) { return std::isfinite(y); });
-  };
-  if (std::any_of(division.blocks.begin(), division.blocks.end(), is_read))
-    std::erase_if(division.blocks, [&](const Block& block) { return !is_read(block); });
-}
-
 void alternate_folds(Division& division, std::size_t folds) {
   division.folds = folds;
   for (std::size_t b = 0; b < division.blocks.size(); ++b) division.blocks[b].fold = b % folds;
@@ -94,6 +82,7 @@ Division thinned_like(Division division, const std::vector<Record>& records,
     block.first = index_of(block.first);
     block.last = index_of(block.last);
   }
+  remove_unread_blocks(thinned, division);
   hide_beside(thinned, division);
   return division;
 }
@@ -132,6 +121,16 @@ Division divide_into_halves(const std::vector<Record>& records) {
   }
   remove_unread_blocks(records, division);
   return division;
+}
+
+void remove_unread_blocks(const std::vector<Record>& records, Division& division) {
+  const auto is_read = [&](const Block& block) {
+    const std::vector<double>& reading_mm = records[block.record].reading_mm;
+    const auto at = [&](std::size_t i) { return reading_mm.begin() + static_cast<std::ptrdiff_t>(i); };
+    return std::any_of(at(block.first), at(block.last), [](double y) { return std::isfinite(y); });
+  };
+  if (std::any_of(division.blocks.begin(), division.blocks.end(), is_read))
+    std::erase_if(division.blocks, [&](const Block& block) { return !is_read(block); });
 }
 
 void hide_readings(Record& record, std::size_t first, std::size_t last) {

@@ -48,6 +48,9 @@ struct Division {
 /// together (one fold), each as five blocks.
 [[nodiscard]] Division divide_into_halves(const std::vector<Record>& records);
 
+/// Removes the blocks without readings. Their error is unknown, so they must not count as blocks with the
+/// error 0. If no block has readings, all blocks remain, because a division has at least one block.
+void remove_unread_blocks(const std::vector<Record>& records, Division& division);
 /// Removes the readings in [first, last) from a record and updates its number of readings.
 void hide_readings(Record& record, std::size_t first, std::size_t last);
 /// Keeps the readings in the first `share` of the samples of each record and removes all other readings.

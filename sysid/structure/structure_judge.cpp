@@ -71,6 +71,7 @@ Division without_starts(Division division, const std::vector<Record>& records) {
     block.hidden_first = std::min(samples_for_start(record), block.last / 2);
     block.first = std::min(block.hidden_first + gap, block.last);
   }
+  remove_unread_blocks(records, division);
   return division;
 }
 

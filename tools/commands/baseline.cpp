@@ -107,6 +107,7 @@ tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs&
   holds = diagnosis->verdict == sysid::ChangeVerdict::unchanged;
   return Json{{"verdict", name_of(diagnosis->verdict)},
               {"sentence", sysid::change_sentence(*diagnosis)},
+              {"warnings", diagnosis->warnings},
               {"output_unit", name_of(runs.healthy.front().output_unit)},
               {"healthy_heldout_rms_mm", diagnosis->readings.back().healthy_mm},
               {"second_run_rms_mm", diagnosis->readings.back().later_mm},
@@ -128,6 +129,13 @@ std::string text_of_check(const Json& check) {
          " on the second run. RMSE of model.yaml, simulated from the command, on the first and the second "
          "run: " +
          number(model["first_run"]) + " and " + number(model["second_run"]) + unit + ".";
+}
+
+void print_check(const std::string& what, const Json& check) {
+  std::printf("%s %s\n", what.c_str(), text_of_check(check).c_str());
+  if (check.is_null()) return;
+  for (const Json& warning : check["warnings"])
+    std::printf("warning: %s\n", visible_lines(warning.get<std::string>()).c_str());
 }
 
 tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
@@ -213,8 +221,8 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
   if (options.json) {
     std::fputs(text->c_str(), stdout);
   } else {
-    std::printf("Baseline of %zu logs in %s. %s\n", runs.healthy.size(), options.out.c_str(),
-                text_of_check(*check).c_str());
+    print_check("Baseline of " + std::to_string(runs.healthy.size()) + " logs in " + options.out + ".",
+                *check);
   }
   return holds ? ExitCode::done : ExitCode::not_acceptable;
 }
@@ -240,8 +248,7 @@ ExitCode checked_again(BaselineOptions options) {
   if (options.json) {
     std::printf("%s\n", json_dump(Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}, 2).c_str());
   } else {
-    std::printf("Baseline in %s: the files of the baseline are unchanged. %s\n", folder.c_str(),
-                text_of_check(*check).c_str());
+    print_check("Baseline in " + folder + ": the files of the baseline are unchanged.", *check);
   }
   return holds ? ExitCode::done : ExitCode::not_acceptable;
 }

@@ -43,6 +43,25 @@ TEST(Orientation, ReadingsThatDoNotFollowTheCommandAreKept) {
   EXPECT_EQ(sentence_of({}), "");
 }
 
+/// Returns logs with the given zeros whose commands lie above each other, so that the readings fall from log
+/// to log.
+std::vector<Log> with_zeros(const std::vector<double>& zeros_mm, double kpa_per_log) {
+  std::vector<Log> logs;
+  for (const double zero_mm : zeros_mm) {
+    logs.push_back(test::log_of({.zero_mm = zero_mm}, 1));
+    for (double& kpa : logs.back().pressure_command_kpa)
+      kpa += kpa_per_log * static_cast<double>(logs.size() - 1);
+  }
+  return logs;
+}
+
+TEST(Orientation, DoesNotDependOnTheZerosOfTheRuns) {
+  EXPECT_FALSE(orientation_of(with_zeros({100, 50, 0}, 60)).is_mirrored());
+  const Orientation reversed = orientation_of(mirrored(with_zeros({0, -200, -400}, 0), {1, -1}));
+  EXPECT_EQ(reversed.pressure, 1);
+  EXPECT_EQ(reversed.reading, -1);
+}
+
 TEST(Orientation, AMirroredRigHasTheSameCauses) {
   std::string unmirrored;
   for (const Signs& signs : all_signs) {
@@ -55,6 +74,8 @@ TEST(Orientation, AMirroredRigHasTheSameCauses) {
     const bool is_stated =
         !d->warnings.empty() && d->warnings.front().find("multiplied by -1") != std::string::npos;
     EXPECT_EQ(is_stated, signs.pressure < 0 || signs.reading < 0);
+    EXPECT_EQ(d->orientation.pressure, signs.pressure);
+    EXPECT_EQ(d->orientation.reading, signs.reading);
   }
   EXPECT_TRUE(unmirrored == "contact" || unmirrored == "sensor_saturation") << unmirrored;
 }

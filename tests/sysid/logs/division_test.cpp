@@ -85,6 +85,14 @@ TEST(Division, HasNoBlockWithoutReadings) {
   }
 }
 
+TEST(Division, HasNoThinnedBlockWithoutReadings) {
+  const std::vector<Record> records{of_length(40, 50)};
+  std::vector<Record> thinned{thinned_record(records[0], 3)};
+  hide_readings(thinned[0], 0, thinned[0].size() / 2);
+  for (const Block& block : thinned_like(divide(records, 8), records, thinned).blocks)
+    EXPECT_GT(block.last, thinned[0].size() / 2);
+}
+
 TEST(Division, HasBlocksIfThereAreNoReadings) {
   std::vector<Record> records{of_length(40, 50)};
   hide_readings(records[0], 0, records[0].size());

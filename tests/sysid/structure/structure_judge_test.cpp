@@ -10,7 +10,9 @@
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/named.h"
+#include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/logs/division.h"
 
 namespace softgrip::sysid::structure_judge_test {
 namespace {
@@ -100,6 +102,15 @@ TEST(StructureJudge, AnEstimatedStartDoesNotIncreaseTheErrorOnTheFirstBlock) {
   ASSERT_EQ(trial.block_losses_mm2.size(), 10U);
   const double first_mm = std::sqrt(trial.block_losses_mm2[0]);
   EXPECT_LT(first_mm, 3 * trial.rmse_mm) << "RMSE of the fit: " << trial.rmse_mm;
+}
+
+TEST(StructureJudge, ABlockWithoutReadingsAfterTheStartIsNotJudged) {
+  std::vector<Record> records{multiplied(begun_during_creep(), 1, 1)};
+  // All readings of the first block except those that determine the start are missing.
+  hide_readings(records[0], samples_for_start(records[0]) / 2, records[0].size() / 10);
+  const StructureChoiceOptions options;
+  const StructureTrial trial = StructureJudge(records, options).judge({.characteristic = false}, 1e-5);
+  for (const double loss_mm2 : trial.block_losses_mm2) EXPECT_GT(loss_mm2, 0);
 }
 
 TEST(StructureJudge, TheErrorOfAnUnsettledStartDoesNotIncreaseInOtherUnits) {
