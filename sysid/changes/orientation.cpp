@@ -3,12 +3,10 @@
 #include <algorithm>
 
 #include "base/statistics.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-/// A correlation with a magnitude above this value counts as significant.
-constexpr double clear_correlation = 0.5;
 
 void mirror(std::vector<double>& column, double factor) {
   for (double& value : column) value *= factor;
@@ -41,7 +39,7 @@ Orientation orientation_of(const std::vector<Log>& logs) {
   }
   Orientation orientation;
   orientation.pressure = -lowest_kpa > highest_kpa ? -1 : 1;
-  orientation.reading = correlation_within(logs) * orientation.pressure < -clear_correlation ? -1 : 1;
+  orientation.reading = correlation_within(logs) * orientation.pressure < -limits::clear_correlation ? -1 : 1;
   return orientation;
 }
 

@@ -120,6 +120,8 @@ inline constexpr double finger_interval_in_units = 0.05;
 /// the command. The only noise of a planned command is the rounding in its file. The command of a controller
 /// also contains the noise of the readings.
 inline constexpr double planned_roughness = 1e-4;
+/// A correlation coefficient with a larger magnitude counts as significant for the direction of a relation.
+inline constexpr double clear_correlation = 0.5;
 /// Largest phase_ratio() for which a cross-correlation counts as even. Up to this limit, the phase shift
 /// differs by at most 30 degrees from 0 or 180 degrees.
 inline constexpr double even_phase_ratio = 1.0 / 3;

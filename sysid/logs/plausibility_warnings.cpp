@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "model/port_flow.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/command_range.h"
 #include "sysid/logs/finite_values.h"
 #include "sysid/logs/isolated_values.h"
@@ -31,8 +32,6 @@ constexpr double large_gain_deg_per_kpa = 5;
 constexpr double small_as_mbar = 20e3;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
-/// A correlation with a magnitude above this value counts as significant.
-constexpr double clear_correlation = 0.5;
 /// Limit of the mean relative area of the loops. An area below this negative limit means that the readings
 /// precede the pressure by more than a drift of the sensor can explain.
 constexpr double clear_loop_backwards = -0.02;
@@ -67,19 +66,19 @@ int best_lag(const std::vector<double>& earlier, const std::vector<double>& late
     best = sums.correlation();
     lag = shift;
   }
-  return best > clear_correlation ? lag : 0;
+  return best > limits::clear_correlation ? lag : 0;
 }
 
 void check_measured_pressure(const Log& log, std::vector<std::string>& warnings) {
   if (log.pressure_kpa.empty() || log.pressure_kpa == log.pressure_command_kpa) return;
   const PairSums sums = sums_of(log.pressure_command_kpa, log.pressure_kpa);
-  if (sums.correlation() < -clear_correlation) {
+  if (sums.correlation() < -limits::clear_correlation) {
     warnings.push_back("the measured pressure decreases when the command increases (correlation " +
                        significant(sums.correlation(), 3) +
                        "). If the sign is wrong, use `softgrip import --scale pressure=-X`");
     return;
   }
-  if (sums.correlation() < clear_correlation) return;
+  if (sums.correlation() < limits::clear_correlation) return;
   const double slope = sums.slope();
   if (const std::string units = pressure_units_apart(slope); !units.empty())
     warnings.push_back(
@@ -119,7 +118,7 @@ double loop_share(const std::vector<double>& pressure, const std::vector<double>
 void check_response(const Log& log, ReadingSign sign, std::vector<std::string>& warnings) {
   const std::vector<double>& drive = drive_of(log);
   const double correlation = sums_of(drive, log.displacement_mm).correlation();
-  if (correlation < -clear_correlation) {
+  if (correlation < -limits::clear_correlation) {
     const std::string found =
         "the reading decreases when the pressure increases (correlation " + significant(correlation, 3) + ")";
     const std::string unit =
@@ -135,7 +134,7 @@ void check_response(const Log& log, ReadingSign sign, std::vector<std::string>& 
     return;
   }
   const double share = loop_share(drive, log.displacement_mm);
-  if (correlation > clear_correlation && share < clear_loop_backwards)
+  if (correlation > limits::clear_correlation && share < clear_loop_backwards)
     warnings.push_back(
         "the reading changes before the pressure (the hysteresis loops run backwards and enclose " +
         significant(-100 * share, 2) +
@@ -316,7 +315,7 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
     for (const std::string& warning : plausibility_warnings(log))
       warnings.push_back(logs.size() > 1 ? log.name + ": " + warning : warning);
     const PairSums sums = sums_of(drive_of(log), log.displacement_mm);
-    gains.push_back(sums.correlation() > clear_correlation ? sums.slope() : 0);
+    gains.push_back(sums.correlation() > limits::clear_correlation ? sums.slope() : 0);
     if (gains.back() != 0 && !shows_wrong_unit(log)) usual_gains.push_back(gains.back());
   }
   for (std::size_t i = 1; i < logs.size(); ++i)
@@ -336,7 +335,7 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
 std::string scale_warning(const std::string& log_name, const std::vector<double>& prediction_mm,
                           const std::vector<double>& reading_mm, model::OutputUnit unit) {
   const PairSums sums = sums_of(prediction_mm, reading_mm);
-  if (sums.correlation() < clear_correlation) return {};
+  if (sums.correlation() < limits::clear_correlation) return {};
   // Fingers of one design differ less than this.
   constexpr double implausible = 3;
   const double factor = sums.slope();
