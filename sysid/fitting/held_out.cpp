@@ -107,6 +107,26 @@ double rmse_mm(const BlockLosses& losses) {
   return std::sqrt(std::accumulate(losses.begin(), losses.end(), 0.0) / static_cast<double>(losses.size()));
 }
 
+LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better) {
+  const auto n = static_cast<double>(worse.size());
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < worse.size(); ++i) mean += (worse[i] - better[i]) / n;
+  for (std::size_t i = 0; i < worse.size(); ++i) square += std::pow(worse[i] - better[i] - mean, 2) / (n - 1);
+  return {mean, std::sqrt(square / n)};
+}
+
+bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse) {
+  const LossDifference plain = loss_difference(worse, better);
+  if (!(plain.mean_mm2 > 0)) return false;
+  if (plain.mean_mm2 > limits::deviate * plain.standard_error_mm2) return true;
+  const auto logarithms = [](BlockLosses losses) {
+    for (double& loss : losses) loss = std::log(std::max(loss, 1e-300));
+    return losses;
+  };
+  const LossDifference by_ratio = loss_difference(logarithms(worse), logarithms(better));
+  return by_ratio.mean_mm2 > limits::deviate * by_ratio.standard_error_mm2;
+}
+
 double loss_of(const std::vector<double>& residual_mm, const Block& block) {
   double sum = 0;
   std::size_t count = 0;

@@ -56,6 +56,17 @@ using BlockStatistic = std::function<double(std::span<const std::size_t> indices
 /// Returns the square root of the mean of the losses over the blocks [mm].
 [[nodiscard]] double rmse_mm(const BlockLosses& losses);
 
+/// Mean of the difference worse - better over the blocks, and the standard error of this mean [mm^2].
+struct LossDifference {
+  double mean_mm2 = 0;
+  double standard_error_mm2 = 0;
+};
+[[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
+/// Returns true if two conditions hold: the mean loss of `better` is below the mean loss of `worse`, and the
+/// 95 % interval of the difference of the losses, or of their logarithms, is above 0. With logarithms, a
+/// block that is difficult for both models does not outweigh the other blocks.
+[[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);
+
 /// Function that fits a model to records from which some readings were removed. The function is called for
 /// several folds in parallel.
 using Refit = std::function<FitPoint(const std::vector<Record>& rest)>;

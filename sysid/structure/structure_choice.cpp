@@ -81,11 +81,13 @@ bool is_better_than(const std::vector<double>& better, const std::vector<double>
   return is_better(compare({worse, better, std::vector<double>(worse.size(), 1)}, 0, seed));
 }
 
-/// If the loss of a trial is significantly lower than the loss of the selected trial, adds it to the choice
-/// and selects it. Returns true if the trial is selected.
+/// If the loss of a trial is clearly lower than the loss of the selected trial, adds it to the choice and
+/// selects it. An extension must reduce the loss in more than one block. A structure without the extension,
+/// in contrast, is already rejected by simplest_of_the_best() if it fails in one block. Returns true if the
+/// trial is selected.
 bool offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
-      !is_better_than(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
+      !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
     return false;
   choice.chosen = choice.trials.size();
   choice.trials.push_back(std::move(trial));
@@ -159,7 +161,7 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
     // complete fit is made.
     const StructureTrial still = choice.trials[choice.chosen];
     const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);
-    if (is_better_than(screening.block_losses_mm2, still.block_losses_mm2))
+    if (is_clearly_less(screening.block_losses_mm2, still.block_losses_mm2))
       offer(judge.judge_resonant(still, ResonanceFit::complete), choice);
   }
 }
@@ -183,7 +185,7 @@ std::vector<StructureTrial> with_modes(const StructureJudge& judge, StructureTri
                                                alone ? heldout_of_chosen_mm : reduced * form.rmse_mm);
     bool is_lower = alone && extended.rmse_mm < reduced * form.rmse_mm;
     if (is_evaluated(extended) && is_evaluated(form)) {
-      is_lower = is_better_than(extended.block_losses_mm2, form.block_losses_mm2) &&
+      is_lower = is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2) &&
                  (alone || extended.heldout_rmse_mm < reduced * form.heldout_rmse_mm);
     }
     if (is_evaluated(extended) && (alone || is_lower)) found.push_back(extended);
@@ -265,9 +267,7 @@ std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                     .judge(structure, ridges[first_ridge])
                     .block_losses_mm2;
   });
-  // An unknown initial state changes the error of one block most, namely of the first one. A single block
-  // must not decide, so the ratios of the losses are compared.
-  return mean_log_ratio(losses[0], losses[1], options.seed).lower > 0 ? records : resting;
+  return is_clearly_less(losses[1], losses[0]) ? records : resting;
 }
 
 StructureChoice choose_structure(const std::vector<Record>& records, const StructureChoiceOptions& options) {

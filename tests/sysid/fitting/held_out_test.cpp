@@ -131,6 +131,23 @@ TEST(MeanLogRatio, BlockWithZeroLossCountsAsATie) {
   EXPECT_EQ(ratio.upper, 0);
 }
 
+TEST(LossDifference, StandardErrorMatchesTheBlockScatter) {
+  const LossDifference same = loss_difference({1, 2, 3, 4}, {1, 2, 3, 4});
+  EXPECT_EQ(same.mean_mm2, 0);
+  EXPECT_EQ(same.standard_error_mm2, 0);
+  const LossDifference worse = loss_difference({2, 2, 4, 4}, {1, 1, 1, 1});
+  EXPECT_DOUBLE_EQ(worse.mean_mm2, 2);
+  EXPECT_DOUBLE_EQ(worse.standard_error_mm2, std::sqrt(4.0 / 3 / 4));
+}
+
+TEST(IsClearlyLess, ComparesTheMeanAndTheMajorityOfBlocks) {
+  EXPECT_TRUE(is_clearly_less({1, 1, 1, 1}, {2, 2, 4, 4}));
+  EXPECT_TRUE(is_clearly_less({1, 1, 1, 30}, {2, 2, 2, 90})) << "one block has a large loss with both models";
+  EXPECT_FALSE(is_clearly_less({1, 2, 3, 4}, {1, 2, 3, 4}));
+  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30})) << "the mean loss of the first model is larger";
+  EXPECT_FALSE(is_clearly_less({1, 3, 1, 3}, {3, 1, 3, 1.5}));
+}
+
 }  // namespace
 
 }  // namespace softgrip::sysid::held_out_test
