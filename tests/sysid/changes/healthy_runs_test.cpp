@@ -1,6 +1,7 @@
 #include "sysid/changes/healthy_runs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <random>
 #include <utility>
@@ -46,12 +47,19 @@ TEST(AddedDisagreement, DoesNotDependOnTheReadings) {
   const Base base =
       fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
   ASSERT_FALSE(base.alternatives.empty());
-  std::vector<Record> later = make_records({test::log_of({}, 7)}, {});
+  Log log = test::log_of({}, 7);
+  // The models disagree, because the pressures are twice as large as in the healthy logs.
+  for (double& kpa : log.pressure_command_kpa) kpa *= 2;
+  // A prediction of such a record usually begins in the state that its first readings show.
+  std::vector<Record> later = make_records({log}, {.start = Start::unknown});
   const Disagreement before = added_disagreement(base, later);
-  for (std::size_t i = 0; i < later[0].size(); ++i) later[0].reading_mm[i] += 0.1 * later[0].time_s[i];
-  const Disagreement drifting = added_disagreement(base, later);
-  EXPECT_NEAR(drifting.mean_square, before.mean_square, 1e-9);
-  EXPECT_NEAR(drifting.loss, before.loss, 1e-6);
+  EXPECT_GT(before.mean_square, 0.01);
+  // This change of the readings looks like unsettled creep.
+  for (std::size_t i = 0; i < later[0].size(); ++i)
+    later[0].reading_mm[i] += 5 * std::exp(-later[0].time_s[i] / 2);
+  const Disagreement creeping = added_disagreement(base, later);
+  EXPECT_NEAR(creeping.mean_square, before.mean_square, 1e-9);
+  EXPECT_NEAR(creeping.loss, before.loss, 1e-6);
 }
 
 TEST(RunSpreadOfSixRuns, AdmitsAChangeIfOneErrorExceedsItsBoundOrBothTheHealthyErrors) {
