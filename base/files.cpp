@@ -126,6 +126,12 @@ std::string name_in_path(const std::string& path) {
   return fs::path(plain_path(path)).filename().string();
 }
 
+std::string why_unreadable(const std::string& path) {
+  if (is_folder(path)) return ::access(path.c_str(), R_OK) == 0 ? std::string() : text_of_errno(errno);
+  const auto file = open_regular(path);
+  return file ? std::string() : file.error();
+}
+
 ScratchFolder::ScratchFolder() {
   std::error_code none;
   const fs::path temporary = fs::temp_directory_path(none);

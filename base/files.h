@@ -49,6 +49,10 @@ struct RegularFile {
 /// Returns the name of the folder or file to which a path leads: the last component of plain_path().
 [[nodiscard]] std::string name_in_path(const std::string& path);
 
+/// Returns "" if `path` is a folder or a regular file that can be opened for reading. Otherwise returns the
+/// reason why it cannot be read.
+[[nodiscard]] std::string why_unreadable(const std::string& path);
+
 /// Returns true if both paths lead to the same file (device and inode), through symbolic and hard links.
 [[nodiscard]] bool same_file(const std::string& one, const std::string& other) noexcept;
 

@@ -217,15 +217,20 @@ class RegulatedPressure {
     return before * waits + mean * (1.0 - waits);
   }
 
+  /// Returns true if the ports have a largest opening.
+  [[nodiscard]] bool is_limited() const { return value_of(n_.full_open_kpa) > 0; }
+  /// Returns the difference between pressure and target, without the overlap, at which a port is fully open.
+  [[nodiscard]] T widest_gap_kpa() const { return n_.full_open_kpa - n_.overlap_kpa; }
+
   /// Returns the time constant of venting at the middle of the step. The time constant is computed for the
   /// pressure that venting towards `target_kpa` has reached at this time.
   T venting_s(const T& target_kpa, const T& step_s) const {
     static const double usual = value_of(outflow(T(usual_kpa)));
     const T begins = outflow(pressure_kpa_);
     if (value_of(begins) <= 0) return T(1e9);  // a chamber at atmospheric pressure has no outflow
-    const T z = step_s * begins / (n_.venting_s * usual), most = n_.full_open_kpa - n_.overlap_kpa;
+    const T z = step_s * begins / (n_.venting_s * usual), most = widest_gap_kpa();
     T gap = target_kpa - pressure_kpa_;
-    if (value_of(n_.full_open_kpa) > 0 && value_of(gap) < -value_of(most)) gap = -most;
+    if (is_limited() && value_of(gap) < -value_of(most)) gap = -most;
     const T halfway = outflow(pressure_kpa_ + gap * (z / (2.0 + z)));
     return n_.venting_s * (usual / (value_of(halfway) > 0 ? halfway : begins));
   }
@@ -236,13 +241,12 @@ class RegulatedPressure {
   T towards(const T& step_s, const T& target, const T& target_after, const T& time_constant, T& mean) {
     using std::log1p;
     const T tau = value_of(time_constant) > shortest_s ? time_constant : T(shortest_s);
-    const T slope = (target_after - target) / step_s, most = n_.full_open_kpa - n_.overlap_kpa;
+    const T slope = (target_after - target) / step_s, most = widest_gap_kpa();
     T gap = target - pressure_kpa_, open_s(0.0), area(0.0);
     const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
     const double sign = way > 0 ? 1 : -1;
-    const bool is_limited = value_of(n_.full_open_kpa) > 0;
     const T rate = sign * most / tau;
-    if (is_limited && std::abs(value_of(gap)) > value_of(most)) {
+    if (is_limited() && std::abs(value_of(gap)) > value_of(most)) {
       // The difference between target and pressure is so large that the port is fully open.
       open_s = step_s;
       if (sign * (value_of(rate) - value_of(slope)) > 0) {
@@ -253,14 +257,14 @@ class RegulatedPressure {
       pressure_kpa_ += rate * open_s;
       gap += (slope - rate) * open_s;
     }
-    T lags_s = step_s - open_s, opens_again_s(0.0);
+    T lags_s = step_s - open_s, open_at_end_s(0.0);
     const bool runs_away = sign * (value_of(slope) - value_of(rate)) > 0;
-    if (is_limited && runs_away && sign * value_of(gap) < value_of(most)) {
+    if (is_limited() && runs_away && sign * value_of(gap) < value_of(most)) {
       // The target moves away so fast that the port becomes fully open. It stays so until the end of the
       // step.
       const T opens_s = tau * log1p((sign * most - gap) / (slope * tau - sign * most));
       if (value_of(opens_s) < value_of(lags_s)) {
-        opens_again_s = lags_s - opens_s;
+        open_at_end_s = lags_s - opens_s;
         lags_s = opens_s;
       }
     }
@@ -273,9 +277,9 @@ class RegulatedPressure {
     const T rise = slope * lags_s, before = pressure_kpa_;
     pressure_kpa_ = before + z * f.phi1 * gap + z * f.phi2 * rise;
     area += (before + z * f.phi2 * gap + z * f.phi3 * rise) * lags_s;
-    area += (pressure_kpa_ + rate * opens_again_s * 0.5) * opens_again_s;
-    pressure_kpa_ += rate * opens_again_s;
-    const T lasts_s = open_s + lags_s + opens_again_s;
+    area += (pressure_kpa_ + rate * open_at_end_s * 0.5) * open_at_end_s;
+    pressure_kpa_ += rate * open_at_end_s;
+    const T lasts_s = open_s + lags_s + open_at_end_s;
     mean = value_of(lasts_s) > 0 ? T(area / lasts_s) : pressure_kpa_;
     return lasts_s;
   }

@@ -16,6 +16,7 @@
 #include "sysid/changes/change_intervals.h"
 #include "sysid/changes/effect_fit.h"
 #include "sysid/changes/orientation.h"
+#include "sysid/evidence/comparison.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::sysid {
@@ -56,11 +57,9 @@ struct ChangeCause {
   /// For a cause that is found without a fit (outliers, sampling), it is the mean square error due to the
   /// cause, divided by the variance of the noise.
   double gain = 0;
-  std::optional<Interval> gain_interval;  ///< 95 % interval of `gain`; empty for a cause without a fit
-  /// Reduction of the whitened RMS error by the cause [%], with its 95 % interval; empty for a cause without
-  /// a fit.
-  std::optional<double> reduction_percent;
-  Interval reduction_interval;
+  std::optional<Interval> gain_interval;    ///< 95 % interval of `gain`; empty for a cause without a fit
+  std::optional<ErrorReduction> reduction;  ///< reduction of the whitened RMS error by the cause; empty for a
+                                            ///< cause without a fit
   std::vector<std::string> alternatives;  ///< ids of other causes that explain the later readings as well as
                                           ///< this cause
 

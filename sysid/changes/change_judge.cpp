@@ -247,11 +247,10 @@ class Judge {
     cause.judged = base_.judged;
     cause.fitted = best;
     cause.gain = scored.gain;
-    const Comparison spread =
-        compare(paired_losses(readings, search.without, scored.fit.white), 0, options_.seed);
+    const PairedLosses losses = paired_losses(readings, search.without, scored.fit.white);
+    const Comparison spread = compare(losses, 0, options_.seed);
     cause.gain_interval = Interval{spread.lower, spread.upper};
-    cause.reduction_percent = 100 * spread.reduction;
-    cause.reduction_interval = {100 * spread.reduction_lower, 100 * spread.reduction_upper};
+    cause.reduction = error_reduction(losses, options_.seed);
     std::vector<const ScoredEffect*> others;
     for (const ScoredEffect& other : all) {
       if (other.fit.fitted.effect.id != cause.id && is_alternative(search, scored, other, ties))

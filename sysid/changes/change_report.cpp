@@ -21,9 +21,11 @@ Value interval_value(const std::optional<Interval>& interval) {
 
 /// Returns the reduction of the whitened RMS error by a cause [%] with its interval. Both are null for a
 /// cause without a fit.
-Fields error_reduction(const ChangeCause& cause) {
-  if (!cause.reduction_percent) return {{"value", Value()}, {"ci95", Value()}};
-  return {{"value", *cause.reduction_percent}, {"ci95", interval_value(cause.reduction_interval)}};
+Fields reduction_percent(const ChangeCause& cause) {
+  if (!cause.reduction) return {{"value", Value()}, {"ci95", Value()}};
+  const auto& [share, interval] = *cause.reduction;
+  return {{"value", 100 * share},
+          {"ci95", interval_value(Interval{100 * interval.lower, 100 * interval.upper})}};
 }
 
 Fields fields_of_cause(const ChangeCause& cause) {
@@ -53,8 +55,8 @@ Fields fields_of_cause(const ChangeCause& cause) {
           {"unit", unit},
           {"share_percent", "share of the error [%]", decimals(cause.share_percent, 0)},
           {"gain", Fields{{"value", cause.gain}, {"ci95", interval_value(cause.gain_interval)}}},
-          {"heldout_error_reduction_percent", error_reduction(cause)},
-          {"heldout_gain_percent", error_reduction(cause)},  // this key is deprecated
+          {"heldout_error_reduction_percent", reduction_percent(cause)},
+          {"heldout_gain_percent", reduction_percent(cause)},  // this key is deprecated
           {"next_steps", Value::List{steps[0], steps[1]}},
           {"", "alternatives", cause.alternatives}};
 }

@@ -11,12 +11,24 @@
 namespace softgrip::sysid {
 namespace {
 
-double reduction_of(double worse, double better) {
-  return worse > 0 ? 1 - std::sqrt(better / worse) : 0;
+/// Calls `use` with the weights of the blocks in each sample of a Bayesian bootstrap.
+template <class Use>
+void for_each_sample(std::size_t blocks, std::uint64_t seed, Use use) {
+  std::mt19937_64 random(seed);
+  std::exponential_distribution<double> exponential(1);
+  std::vector<double> weights(blocks);
+  for (std::size_t sample = 0; sample < limits::bootstrap_draws; ++sample) {
+    for (double& weight : weights) weight = exponential(random);
+    use(weights);
+  }
 }
 
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
+/// Returns the 95 % interval of sorted values.
+Interval interval_of(const std::vector<double>& sorted) {
+  const auto at = [&](double share) {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  };
+  return {at((1 - limits::probability) / 2), at((1 + limits::probability) / 2)};
 }
 
 }  // namespace
@@ -38,28 +50,33 @@ void PairedLosses::append(const PairedLosses& more) {
 }
 
 Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed) {
-  constexpr std::size_t draws = limits::bootstrap_draws;
-  std::mt19937_64 random(seed);
-  std::exponential_distribution<double> weight(1);
-  std::vector<double> differences(draws), reductions(draws);
-  for (std::size_t draw = 0; draw < draws; ++draw) {
-    double worse = 0, better = 0, rows = 0;
-    for (std::size_t i = 0; i < losses.rows.size(); ++i) {
-      const double w = weight(random);
-      worse += w * losses.worse[i];
-      better += w * losses.better[i];
-      rows += w * losses.rows[i];
+  std::vector<double> differences;
+  for_each_sample(losses.rows.size(), seed, [&](const std::vector<double>& weights) {
+    double sum = 0, rows = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      sum += weights[i] * (losses.worse[i] - losses.better[i]);
+      rows += weights[i] * losses.rows[i];
     }
-    differences[draw] = rows > 0 ? (worse - better) / rows : 0;
-    reductions[draw] = reduction_of(worse, better);
-  }
+    differences.push_back(rows > 0 ? sum / rows : 0);
+  });
   std::sort(differences.begin(), differences.end());
-  std::sort(reductions.begin(), reductions.end());
   const auto wins = differences.end() - std::upper_bound(differences.begin(), differences.end(), tolerance);
-  const auto low = static_cast<std::size_t>((1 - limits::probability) / 2 * static_cast<double>(draws - 1));
-  const auto high = static_cast<std::size_t>((1 + limits::probability) / 2 * static_cast<double>(draws - 1));
-  return {static_cast<double>(wins) / static_cast<double>(draws),    differences[low], differences[high],
-          reduction_of(sum_of(losses.worse), sum_of(losses.better)), reductions[low],  reductions[high]};
+  const Interval interval = interval_of(differences);
+  return {static_cast<double>(wins) / static_cast<double>(differences.size()), interval.lower,
+          interval.upper};
+}
+
+ErrorReduction error_reduction(const PairedLosses& losses, std::uint64_t seed) {
+  const auto with = [&](const std::vector<double>& weights) {
+    const double worse = std::inner_product(weights.begin(), weights.end(), losses.worse.begin(), 0.0);
+    const double better = std::inner_product(weights.begin(), weights.end(), losses.better.begin(), 0.0);
+    return worse > 0 ? 1 - std::sqrt(better / worse) : 0;
+  };
+  std::vector<double> reductions;
+  for_each_sample(losses.rows.size(), seed,
+                  [&](const std::vector<double>& weights) { reductions.push_back(with(weights)); });
+  std::sort(reductions.begin(), reductions.end());
+  return {with(std::vector<double>(losses.rows.size(), 1)), interval_of(reductions)};
 }
 
 bool is_better(const Comparison& comparison) {

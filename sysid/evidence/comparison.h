@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "sysid/fitting/interval.h"
+
 namespace softgrip::sysid {
 
 /// Losses of two hypotheses, stated separately for each block of the data.
@@ -31,9 +33,6 @@ struct Comparison {
   /// the tolerance.
   double share = 0;
   double lower = 0, upper = 0;  ///< 95 % interval of the loss difference (`worse` minus `better`) per row
-  /// Reduction of the root of the loss, 1 - sqrt(better / worse), and its 95 % interval. All are 0 if the
-  /// loss of `worse` is 0.
-  double reduction = 0, reduction_lower = 0, reduction_upper = 0;
 };
 
 /// Compares the mean losses per row of two hypotheses by a Bayesian bootstrap over the blocks (Rubin, Annals
@@ -41,6 +40,16 @@ struct Comparison {
 /// @param tolerance  largest loss difference per row that counts as zero.
 /// @param seed  seed of the random weights; equal seeds give equal results.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
+
+/// Reduction of the root of the loss, 1 - sqrt(better / worse), with its 95 % interval.
+struct ErrorReduction {
+  double share = 0;
+  Interval interval;
+};
+
+/// Returns the reduction from the loss of `worse` to the loss of `better`, with the bootstrap samples of
+/// compare(). The ratio is computed in each sample. If the loss of `worse` is 0, the reduction is 0.
+[[nodiscard]] ErrorReduction error_reduction(const PairedLosses& losses, std::uint64_t seed);
 
 /// Returns true if `better` wins in at least 95 % of the bootstrap samples (limits::probability). It wins in
 /// a sample if its loss is smaller by more than the tolerance of compare().

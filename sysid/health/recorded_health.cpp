@@ -114,23 +114,12 @@ std::vector<SkippedRun> without_baseline(const std::vector<ScoredRun>& runs, Bas
   return skipped;
 }
 
-/// Returns the reason why a path of the user cannot be read, or "". A folder with a run.csv is a recording,
-/// whose log is read later.
-std::string why_unreadable(const std::string& path) {
-  if (!is_folder(path)) {
-    const auto file = open_regular(path);
-    return file ? std::string() : file.error();
-  }
-  std::error_code error;
-  const fs::directory_iterator entries(path, error);
-  return error && !is_there(fs::path(path) / "run.csv") ? error.message() : std::string();
-}
-
 /// Returns find_runs(paths), and adds each folder without recordings and each unreadable path to `skipped`.
 std::vector<std::string> runs_in(const std::vector<std::string>& paths, std::vector<SkippedRun>& skipped) {
   std::vector<std::string> runs;
   for (const std::string& path : paths) {
-    if (const std::string why = why_unreadable(path); !why.empty()) {
+    // A folder with a run.csv is a recording, whose log is read later.
+    if (const std::string why = why_unreadable(path); !why.empty() && !is_there(path + "/run.csv")) {
       skipped.push_back({path, "the path cannot be read: " + why, {}, true});
       continue;
     }

@@ -42,13 +42,18 @@ std::string recording_at(const std::string& path) {
   return is_there(folder / "run.json") ? folder.string() : path;
 }
 
-/// Returns the first characters of the hash of a recording's log; empty if the log cannot be read.
-std::string hash_of_log(const std::string& path) {
+/// Returns the first characters of a SHA-256 hash. They are stored with the scores.
+std::string shortened(const std::string& hash) {
   constexpr std::size_t letters = 12;
+  return hash.substr(0, letters);
+}
+
+/// Returns the shortened hash of a recording's log; empty if the log cannot be read.
+std::string hash_of_log(const std::string& path) {
   const auto file = log_file_of(path);
   if (!file) return {};
   const auto text = read_file(*file, largest_health_file);
-  return text ? sha256(*text).substr(0, letters) : std::string();
+  return text ? shortened(sha256(*text)) : std::string();
 }
 
 /// Returns true if the recording at `path` is not the recording of an earlier score with the same name.
@@ -95,11 +100,10 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     scores.skipped.push_back({name, problems.empty() ? recording.error() : problems.list().front().message});
     return;
   }
-  const std::string hash = hash_of_log(path);
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
     ScoredRun run{recording->name, finger, recording->started_at, recording->recipe, {}, {}};
-    run.log_hash = hash;
+    run.log_hash = shortened(recording->channels[c].sha256);
     if (const FingerBase* const base = base_of(finger); base != nullptr) {
       const model::OutputUnit unit = recording->channels[c].output_unit;
       if (unit != base->base.model.output_unit) {

@@ -74,13 +74,6 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// Returns true if the held-out losses `better` are significantly lower than the losses `worse`
-/// (sysid/evidence/comparison.h). All blocks have the same weight, regardless of their number of readings.
-bool is_better_than(const std::vector<double>& better, const std::vector<double>& worse) {
-  constexpr std::uint64_t seed = 1;
-  return is_better(compare({worse, better, std::vector<double>(worse.size(), 1)}, 0, seed));
-}
-
 /// If the loss of a trial is clearly lower than the loss of the selected trial, adds it to the choice and
 /// selects it. An extension must reduce the loss in more than one block. A structure without the extension,
 /// in contrast, is already rejected by simplest_of_the_best() if it fails in one block. Returns true if the
@@ -244,10 +237,13 @@ FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
 }  // namespace
 
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials) {
+  constexpr std::uint64_t seed = 1;
   const std::size_t best = best_of(trials);
+  const std::vector<double>& lowest_mm2 = trials[best].block_losses_mm2;
+  const std::vector<double> equal_weights(lowest_mm2.size(), 1);
   for (std::size_t i = 0; i < best; ++i) {
     if (may_be_chosen(trials[i]) &&
-        !is_better_than(trials[best].block_losses_mm2, trials[i].block_losses_mm2))
+        !is_better(compare({trials[i].block_losses_mm2, lowest_mm2, equal_weights}, 0, seed)))
       return i;
   }
   return best;

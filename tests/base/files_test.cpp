@@ -97,6 +97,17 @@ TEST(PlainPath, ASeparatorAtTheEndIsRemoved) {
   EXPECT_EQ(name_in_path("./runs/../day/grip.csv"), "grip.csv");
 }
 
+TEST(WhyUnreadable, StatesTheReasonUnlessThePathIsAFolderOrAFile) {
+  const ScratchFolder folder;
+  const std::string file = folder.path() + "/file";
+  ASSERT_TRUE(write_file(file, "text"));
+  EXPECT_EQ(why_unreadable(folder.path()), "");
+  EXPECT_EQ(why_unreadable(file), "");
+  EXPECT_EQ(why_unreadable(folder.path() + "/none"), "No such file or directory");
+  EXPECT_EQ(why_unreadable(file + "/inside"), "Not a directory");
+  EXPECT_NE(why_unreadable("/dev/null"), "") << "a device is not a regular file";
+}
+
 TEST(ScratchFolder, TheDestructorRemovesTheFolderAndAllFiles) {
   std::string path;
   {

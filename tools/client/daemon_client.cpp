@@ -67,20 +67,20 @@ namespace {
 /// for example its name, so control characters are escaped.
 ClientFailure failure_of(const Json& error) {
   const std::string code = error.value("code", "");
-  const std::string message =
-      visible_lines(error.value("message", "the daemon gave no reason for the refusal"));
+  std::string message = error.value("message", "the daemon gave no reason for the refusal");
+  ExitCode exit_code = ExitCode::failed;
   if (code == "sequence_refused") {
-    return {ExitCode::input_refused,
-            visible_lines(message + problem_list(error.value("problems", Json::array())))};
+    exit_code = ExitCode::input_refused;
+    message += problem_list(error.value("problems", Json::array()));
+  } else if (code == "too_long") {
+    exit_code = ExitCode::input_refused;
+  } else if (code == "refused") {
+    exit_code = ExitCode::state_refused;
+    message = "refused (" + error.value("refusal", Json::object()).value("code", "?") + "): " + message;
+  } else if (code == "busy" || code == "abandoned" || code == "owned" || code == "not_allowed") {
+    exit_code = ExitCode::state_refused;
   }
-  if (code == "too_long") return {ExitCode::input_refused, message};
-  if (code == "refused") {
-    const Json refusal = error.value("refusal", Json::object());
-    return {ExitCode::state_refused, "refused (" + refusal.value("code", "?") + "): " + message};
-  }
-  if (code == "busy" || code == "abandoned" || code == "owned" || code == "not_allowed")
-    return {ExitCode::state_refused, message};
-  return {ExitCode::failed, message};
+  return {exit_code, visible_lines(message)};
 }
 
 }  // namespace

@@ -1,13 +1,9 @@
 #include "tools/command_line/input_files.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <system_error>
 
 #include "base/files.h"
-#include "base/text.h"
 #include "model/file/model_file.h"
 
 namespace softgrip::tools {
@@ -30,12 +26,6 @@ std::vector<std::string> document_names(const std::filesystem::path& folder) {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-std::string why_unreadable(const std::string& path) {
-  if (is_folder(path)) return ::access(path.c_str(), R_OK) == 0 ? std::string() : text_of_errno(errno);
-  const auto file = open_regular(path);
-  return file ? std::string() : file.error();
 }
 
 std::optional<ExitCode> unreadable(const std::string& path) {

@@ -25,10 +25,6 @@ namespace softgrip::tools {
 /// the folder is unreadable.
 [[nodiscard]] std::vector<std::string> document_names(const std::filesystem::path& folder);
 
-/// Returns "" if `path` is a folder or a regular file that can be opened for reading. Otherwise returns the
-/// reason why it cannot be read.
-[[nodiscard]] std::string why_unreadable(const std::string& path);
-
 /// Returns nullopt if `path` is readable. Otherwise prints a sentence to the standard error and returns
 /// ExitCode::io.
 [[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);

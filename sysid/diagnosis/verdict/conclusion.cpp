@@ -167,7 +167,7 @@ void Conclusion::count_readings(const UnexplainedError& left) {
   d_.unexplained_percent = left.present ? 100 * left_mm2 / (left_mm2 + explained_mm2) : 0;
 }
 
-bool Conclusion::names_readings_alone(const Selection& selection, const Division& division) {
+bool Conclusion::name_readings_alone(const Selection& selection, const Division& division) {
   const auto is_chosen = [&](const NamedCause& named) {
     return std::ranges::find(selection.chosen, named.cause, &ChosenCause::cause) != selection.chosen.end();
   };
@@ -188,7 +188,7 @@ void Conclusion::conclude(const Selection& selection, const Division& division) 
   const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
   const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
   const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
-  if (by_chance && !too_much_left && names_readings_alone(selection, division)) return;
+  if (by_chance && !too_much_left && name_readings_alone(selection, division)) return;
   if (!selection.chosen.empty() && (too_much_left || by_chance)) {
     d_.verdict = Verdict::unexplained;
     d_.partial = std::move(causes_);

@@ -65,7 +65,7 @@ class Conclusion {
   void measure_extended(const Selection& selection, const Division& division);
   /// Moves the causes of the selection to the partial causes, and returns true, if the selection was found by
   /// chance and there are causes in the readings. The recalibrated model then is the extended model.
-  [[nodiscard]] bool names_readings_alone(const Selection& selection, const Division& division);
+  [[nodiscard]] bool name_readings_alone(const Selection& selection, const Division& division);
   /// If there are outliers or repeated readings, computes the unexplained share so that it includes the error
   /// that these readings explain.
   void count_readings(const UnexplainedError& left);

@@ -17,7 +17,12 @@ struct Signs {
 constexpr Signs all_signs[] = {{1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
 
 std::vector<Log> mirrored(std::vector<Log> logs, const Signs& signs) {
-  return oriented(std::move(logs), {signs.pressure, signs.reading});
+  for (Log& log : logs) {
+    for (double& kpa : log.pressure_command_kpa) kpa *= signs.pressure;
+    for (double& kpa : log.pressure_kpa) kpa *= signs.pressure;
+    for (double& mm : log.displacement_mm) mm *= signs.reading;
+  }
+  return logs;
 }
 
 TEST(Orientation, UndoesTheSignsOfTheRig) {

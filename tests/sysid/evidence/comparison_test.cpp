@@ -43,14 +43,14 @@ TEST(Comparison, AFailureInOneBlockIsALossReduction) {
   EXPECT_FALSE(is_better(compare(balanced, 0, 1))) << "each model fails in one block";
 }
 
-TEST(Comparison, TheReductionIsARatioInEachSample) {
+TEST(ErrorReduction, IsARatioInEachSample) {
   // The losses differ by a factor of 100 between the blocks, but the ratio is the same in each block.
   const PairedLosses paired{.worse = {4, 400, 40, 4}, .better = {1, 100, 10, 1}, .rows = {10, 10, 10, 10}};
-  const Comparison same = compare(paired, 0, 1);
-  EXPECT_NEAR(same.reduction, 0.5, 1e-12);
-  EXPECT_NEAR(same.reduction_lower, 0.5, 1e-12);
-  EXPECT_NEAR(same.reduction_upper, 0.5, 1e-12);
-  EXPECT_EQ(compare({{0, 0}, {0, 0}, {1, 1}}, 0, 1).reduction, 0);
+  const ErrorReduction same = error_reduction(paired, 1);
+  EXPECT_NEAR(same.share, 0.5, 1e-12);
+  EXPECT_NEAR(same.interval.lower, 0.5, 1e-12);
+  EXPECT_NEAR(same.interval.upper, 0.5, 1e-12);
+  EXPECT_EQ(error_reduction({{0, 0}, {0, 0}, {1, 1}}, 1).share, 0);
 }
 
 TEST(Comparison, EqualLossesGiveAShareOfZero) {
