@@ -33,16 +33,19 @@ std::optional<double> number_of(std::string_view text, CellValue& value) {
   if (!decimal) return std::nullopt;
   std::string pointed(text);
   pointed[comma] = '.';
-  value.with_comma = true;
-  return to_number(pointed);
+  const auto number = to_number(pointed);
+  value.with_comma = number.has_value();
+  return number;
 }
 
-/// Returns true if the text is a whole number in groups of three digits, with a comma between the groups.
+/// Returns true if the text is a whole number in groups of three digits, with commas or with points between
+/// the groups.
 bool has_groups_of_thousands(std::string_view text) {
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  const char mark = text.find(',') == std::string_view::npos ? '.' : ',';
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[text.size() - 1 - i];
-    if (i % 4 == 3 ? c != ',' : std::isdigit(static_cast<unsigned char>(c)) == 0) return false;
+    if (i % 4 == 3 ? c != mark : std::isdigit(static_cast<unsigned char>(c)) == 0) return false;
   }
   return text.size() > 4 && text.size() % 4 != 0 && text.front() != '0';
 }
@@ -95,20 +98,23 @@ std::optional<std::size_t> whole_number(std::string_view text) {
   return value;
 }
 
-void DecimalCommas::add(const CellValue& cell, std::string_view text) {
+void DecimalMarks::add(const CellValue& cell, std::string_view text) {
   if (cell.kind == CellKind::missing) return;
+  const bool has_mark = cell.with_comma || cell.with_point;
   if (cell.grouped && grouped_.empty()) grouped_ = trimmed(unquoted(text));
-  is_decimal_ = is_decimal_ || (cell.with_comma && !cell.grouped);
+  is_decimal_ = is_decimal_ || (has_mark && !cell.grouped);
   differs_ = differs_ || (cell.kind == CellKind::text && cell.grouped);
-  if (cell.kind != CellKind::number || cell.with_comma) return;
-  differs_ = differs_ || cell.number != without_comma_.value_or(cell.number);
-  without_comma_ = cell.number;
+  if (cell.kind != CellKind::number || has_mark) return;
+  differs_ = differs_ || cell.number != without_mark_.value_or(cell.number);
+  without_mark_ = cell.number;
 }
 
-std::string DecimalCommas::ambiguous_cell(std::span<const double> values) const {
-  if (grouped_.empty() || is_decimal_ || !(differs_ || without_comma_)) return {};
-  return differs_ || std::ranges::count(sensor_codes(values), *without_comma_) == 0 ? grouped_
-                                                                                    : std::string();
+std::string DecimalMarks::ambiguous_cell(std::span<const double> values) const {
+  if (grouped_.empty() || is_decimal_ || !(differs_ || without_mark_)) return {};
+  if (differs_) return grouped_;
+  // Some programs write the value at rest as 0 and all other values with three decimals after a point.
+  const bool is_point = grouped_.find('.') != std::string::npos;
+  return is_point || std::ranges::count(sensor_codes(values), *without_mark_) > 0 ? std::string() : grouped_;
 }
 
 }  // namespace softgrip::sysid

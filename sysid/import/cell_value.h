@@ -1,6 +1,7 @@
 #pragma once
 // Interprets one cell of an imported text file as a number, a missing value, a time or another text.
-// Determines if the commas in a column of cells can separate thousands instead of being decimal commas.
+// Determines if the commas or points in a column of cells can separate thousands instead of being decimal
+// marks.
 
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,7 @@ struct CellValue {
   int missing_word = -1;
   bool with_comma = false;  ///< true: the number has a decimal comma
   bool with_point = false;  ///< true: the number has a decimal point
-  /// True: each comma of the cell can separate thousands, as in "20,000" and "1,234,567".
+  /// True: each comma or point of the cell can separate thousands, as in "20,000" and "1.234.567".
   bool grouped = false;
 };
 
@@ -41,24 +42,25 @@ struct CellValue {
 /// value that is too large.
 [[nodiscard]] std::optional<std::size_t> whole_number(std::string_view text);
 
-/// Commas in the cells of a column.
-class DecimalCommas {
+/// Decimal marks in the cells of a column.
+class DecimalMarks {
  public:
   /// Adds the next cell of the column.
   void add(const CellValue& cell, std::string_view text);
 
-  /// Returns the first cell such as "20,000", whose comma can be a decimal comma or separate thousands.
-  /// Returns "" if the commas have a clear meaning: a comma cannot separate thousands ("20,5"), or all
-  /// numbers have one comma. Numbers without a comma are ignored if all of them are the same code for a
-  /// missing value, such as 999 (sensor_codes.h).
+  /// Returns the first cell such as "20,000" or "1.234", whose mark can be a decimal mark or separate
+  /// thousands. Returns "" if the marks have a clear meaning: a mark cannot separate thousands ("20,5"), or
+  /// all numbers have one mark. Numbers without a comma are ignored if all of them are the same code for a
+  /// missing value, such as 999 (sensor_codes.h). Numbers without a point are ignored if all of them are
+  /// equal.
   /// @param values  values of the column.
   [[nodiscard]] std::string ambiguous_cell(std::span<const double> values) const;
 
  private:
-  std::string grouped_;      ///< first cell in which each comma can separate thousands
-  bool is_decimal_ = false;  ///< true: a comma cannot separate thousands
-  bool differs_ = false;     ///< true: a cell has several commas, or `without_comma_` is not unique
-  std::optional<double> without_comma_;  ///< first number without a comma
+  std::string grouped_;                 ///< first cell in which each mark can separate thousands
+  bool is_decimal_ = false;             ///< true: a mark cannot separate thousands
+  bool differs_ = false;                ///< true: a cell has several marks, or `without_mark_` is not unique
+  std::optional<double> without_mark_;  ///< first number without a decimal mark
 };
 
 }  // namespace softgrip::sysid

@@ -23,7 +23,11 @@ constexpr double variation_share = 0.5;
 /// Two clocks with the same origin count as one clock if they differ by at most this share of the usual time
 /// step.
 constexpr double equal_share = 0.05;
+/// Smallest share of rising steps among the steps of a time column that are not 0. Steps of 0 are ignored,
+/// because time stamps with a low resolution repeat.
 constexpr double rising_share = 0.9;
+/// Smallest number of rising steps of a time column with more steps than this number.
+constexpr std::size_t fewest_rises = 2;
 /// Largest share of rows that have a time in only one of two time columns. If the share is larger, the two
 /// columns do not count as one clock.
 constexpr double apart_share = 0.01;
@@ -73,10 +77,18 @@ bool explains(const std::vector<double>& clock, double period, double step) {
 }
 
 bool rises(const std::vector<double>& values) {
-  const std::vector<double> steps = steps_of(values);
-  const auto forward = std::count_if(steps.begin(), steps.end(), [](double step) { return step >= 0; });
-  return usual_step(values) > 0 &&
+  std::vector<double> steps = steps_of(values);
+  const std::size_t fewest = std::min(steps.size(), fewest_rises);
+  std::erase(steps, 0.0);
+  const auto forward = std::count_if(steps.begin(), steps.end(), [](double step) { return step > 0; });
+  return forward > 0 && static_cast<std::size_t>(forward) >= fewest &&
          static_cast<double>(forward) >= rising_share * static_cast<double>(steps.size());
+}
+
+/// Returns true if the mapping assigns the role of the time to the column.
+bool is_mapped_time(const ForeignTable& table, const Mapping& mapping, std::size_t index) {
+  return std::ranges::any_of(mapping[Role::time].columns,
+                             [&](const std::string& word) { return column_index(table, word) == index; });
 }
 
 /// Returns the unit of a time column; empty if the unit is unknown.
@@ -84,11 +96,8 @@ std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::si
   const TableColumn& column = table.columns[index];
   const std::string own = stated_unit(column, Quantity::time);
   const ColumnMapping& time = mapping[Role::time];
-  const bool mapped = std::any_of(time.columns.begin(), time.columns.end(), [&](const std::string& word) {
-    return column_index(table, word) == index;
-  });
   const bool alone = time.columns.size() < 2;
-  if (mapped && !time.unit.empty() && (alone || own.empty())) return time.unit;
+  if (is_mapped_time(table, mapping, index) && !time.unit.empty() && (alone || own.empty())) return time.unit;
   return own.empty() ? epoch_unit(column) : own;
 }
 
@@ -186,17 +195,19 @@ std::vector<std::size_t> time_columns(const ForeignTable& table) {
 std::optional<std::vector<double>> seconds_of(const ForeignTable& table, const Mapping& mapping,
                                               std::size_t column, std::optional<Overflow>* overflow) {
   std::vector<double> values = without_codes(table, mapping, column);
-  double factor = 1;
+  const bool is_mapped = is_mapped_time(table, mapping, column);
+  const auto scale = is_mapped ? mapping[Role::time].scale : std::nullopt;
+  double factor = scale.value_or(1);
   if (overflow != nullptr) overflow->reset();
   if (table.columns[column].moments == 0) {
     const auto unit = unit_named(time_unit(table, mapping, column), Quantity::time);
-    if (!unit) return std::nullopt;
-    factor = unit->factor;
+    if (!unit && !scale) return std::nullopt;
+    if (!scale) factor = unit->factor;
     const auto found = continue_overflows(values, factor);
     if (overflow != nullptr) *overflow = found;
   }
   const double begin_s = seconds(table.columns[column].first_moment);
-  for (double& value : values) value = begin_s + factor * value;
+  for (double& value : values) value = factor * (begin_s + value);
   return values;
 }
 

@@ -45,10 +45,11 @@ std::optional<Overflow> continue_overflows(std::vector<double>& clock, double un
 
 /// Returns the indices of the columns that probably contain times. Such a column contains dates, times of
 /// day, or increasing numbers. A column of increasing numbers is included only if its name or its unit is
-/// that of a time.
+/// that of a time. At least two steps must increase, and at least 90 % of the steps that are not 0.
 [[nodiscard]] std::vector<std::size_t> time_columns(const ForeignTable& table);
 
-/// Returns the values of a time column [s]; NaN for a missing value. Overflows are corrected. Returns nullopt
+/// Returns the values of a time column [s]; NaN for a missing value. Overflows are corrected. If the mapping
+/// uses the column as a time and states a scale, the scale replaces the unit of the column. Returns nullopt
 /// if the unit of the column is unknown.
 /// @param overflow  if not null: receives the corrected overflows; nullopt if there are none.
 [[nodiscard]] std::optional<std::vector<double>> seconds_of(const ForeignTable& table, const Mapping& mapping,

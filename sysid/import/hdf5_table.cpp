@@ -265,6 +265,7 @@ struct Walk {
   char separator = '/';
   hid_t access = H5P_DEFAULT;  ///< HDF5 property list with which libhdf5 follows links
   std::string refused{};       ///< reason why the file is refused; empty: the file is not refused
+  std::string hint = "copy the values into one HDF5 file, without references to other files";
   int objects = 0;
 };
 
@@ -273,6 +274,15 @@ struct Visit {
   std::string prefix;
   int depth = 0;
 };
+
+herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data);
+
+/// Visits all objects of a group. A damaged group is refused, because its remaining objects are unknown.
+void visit_all(hid_t group, const std::string& path, Visit inside) {
+  if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &inside) >= 0) return;
+  inside.walk.refused = "the group '" + document::shown(path) + "' cannot be read";
+  inside.walk.hint = "the file is damaged. Write it again, or copy the readable values into another file";
+}
 
 herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) {
   auto& where = *static_cast<Visit*>(data);
@@ -299,9 +309,10 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
     else
       collect_dataset(object.get(), path, walk.arrays);
   }
-  if (kind == H5I_GROUP && where.depth < deepest_group) {
-    Visit inside{walk, path + walk.separator, where.depth + 1};
-    H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &inside);
+  if (kind == H5I_GROUP && where.depth >= deepest_group) {
+    walk.arrays.skip(path, "only " + std::to_string(deepest_group) + " levels of groups are read");
+  } else if (kind == H5I_GROUP) {
+    visit_all(object.get(), path, {walk, path + walk.separator, where.depth + 1});
   }
   return walk.refused.empty() ? 0 : 1;
 }
@@ -329,14 +340,9 @@ std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::
   const Handle access(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
   H5Pset_elink_cb(access.get(), refuse_external_link, nullptr);
   Walk walk{arrays, matlab ? '.' : '/', access.get()};
-  Visit root{walk, {}, 0};
-  H5Literate(file.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &root);
+  visit_all(file.get(), "/", {walk, {}, 0});
   if (!walk.refused.empty()) {
-    problems.add({path,
-                  {1, 1},
-                  {},
-                  "not read: " + walk.refused,
-                  "copy the values into one HDF5 file, without references to other files"});
+    problems.add({path, {1, 1}, {}, "not read: " + walk.refused, walk.hint});
     return std::nullopt;
   }
   return arrays.table(matlab ? "MATLAB 7.3" : "HDF5", problems);

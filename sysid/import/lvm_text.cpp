@@ -22,6 +22,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   std::vector<Cell> cells;
   std::vector<std::string> texts;
   (void)split(line, cells, separator);
+  texts.reserve(cells.size());
   for (const Cell& cell : cells) texts.emplace_back(trimmed(cell_text(cell.text)));
   return texts;
 }
@@ -44,6 +45,10 @@ class LvmReader {
     table_.notes = text.notes;
     std::size_t at = 0;
     const Header file_header = header(lines, at);
+    if (separator_ == decimal_)
+      return refuse(decimal_line_,
+                    "the header states that commas separate the columns and that the numbers have decimal "
+                    "commas, so the numbers cannot be read");
     x_columns_ = lower_case(first_of(file_header, "X_Columns"));
     int sections = 0;
     while (at < lines.size() && good_) {
@@ -164,11 +169,19 @@ class LvmReader {
       const std::string key = cells.front();
       cells.erase(cells.begin());
       if (key == "Separator" && lower_case(cells.empty() ? "" : cells.front()) == "comma") separator_ = ',';
-      if (key == "Decimal_Separator" && !cells.empty() && !cells.front().empty())
-        decimal_ = cells.front().front();
+      if (key == "Decimal_Separator") read_decimal_mark(lines[at].substr(lines[at].find(key)), at + 1);
       if (!key.empty()) header[key] = std::move(cells);
     }
     return header;
+  }
+
+  /// Reads the decimal mark from its line of the header. The mark follows the key and one separator, because
+  /// the mark can be the separator itself.
+  void read_decimal_mark(std::string_view line, std::size_t number_of_line) {
+    const std::size_t at = std::string_view("Decimal_Separator").size() + 1;
+    if (at >= line.size() || trimmed(line.substr(at)).empty()) return;
+    decimal_ = trimmed(line.substr(at)).front();
+    decimal_line_ = number_of_line;
   }
 
   void section(const std::vector<std::string_view>& lines, std::size_t& at) {
@@ -177,8 +190,8 @@ class LvmReader {
     if (at >= lines.size()) return;
     const std::size_t names_line = at;
     std::vector<std::string> names = cells_of(lines[at++], separator_);
-    const bool comment = !names.empty() && names.back() == "Comment";
-    if (comment) names.pop_back();
+    has_comments_ = !names.empty() && names.back() == "Comment";
+    if (has_comments_) names.pop_back();
     if (!take_names(names, section, names_line + 1) || !has_one_clock(section, names_line + 1)) return;
     const double x0 = number(first_of(section, "X0"));
     const double delta = number(first_of(section, "Delta_X"));
@@ -248,7 +261,10 @@ class LvmReader {
       refuse(short_line_, "this line has too few cells; to leave out such lines, use --skip-bad-lines");
       return;
     }
-    const std::vector<std::string> cells = cells_of(line, separator_);
+    std::vector<std::string> cells = cells_of(line, separator_);
+    const std::size_t most = table_.columns.size() + (has_comments_ ? 1 : 0);
+    while (cells.size() > most && cells.back().empty()) cells.pop_back();
+    if (cells.size() > most) return leave_out_long(number_of_line, cells.size());
     if (cells.size() < table_.columns.size()) {
       table_.account.leave_out(options_.skip_bad_lines ? LeftOut::bad_line : LeftOut::cut_off_line);
       short_line_ = number_of_line;
@@ -257,6 +273,14 @@ class LvmReader {
     for (std::size_t i = 0; i < table_.columns.size(); ++i) add_cell(i, cells[i], number_of_line, counted_x);
     table_.line.push_back(static_cast<int>(number_of_line));
     table_.position.push_back(table_.account.rows - 1);
+  }
+
+  /// Leaves out a line with too many cells, or refuses the file.
+  void leave_out_long(std::size_t number_of_line, std::size_t cells) {
+    if (options_.skip_bad_lines) return table_.account.leave_out(LeftOut::bad_line);
+    refuse(number_of_line, "this line has " + std::to_string(cells) + " cells, but the table has " +
+                               std::to_string(table_.columns.size()) +
+                               " columns; to leave out such lines, use --skip-bad-lines");
   }
 
   void add_cell(std::size_t i, const std::string& text, std::size_t line, double counted_x) {
@@ -281,6 +305,8 @@ class LvmReader {
   std::string x_columns_;
   char separator_ = '\t';
   char decimal_ = '.';
+  std::size_t decimal_line_ = 1;  ///< number of the line that states the decimal mark
+  bool has_comments_ = false;     ///< true: each row of the current section can end with a comment
   Nanoseconds first_moment_ = 0;
   std::size_t lines_ = 1;  ///< number of lines in the file
   /// Number of the first line that has too few cells; 0: all lines are complete.

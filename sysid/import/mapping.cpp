@@ -19,6 +19,8 @@ constexpr std::array<std::pair<std::string_view, char>, 5> separator_words{
 
 constexpr double longest_s = 1e9;
 constexpr std::size_t most_mapping_bytes = std::size_t{64} * 1024;
+/// Largest size of the comments with the messages of the import [bytes].
+constexpr std::size_t most_comment_bytes = most_mapping_bytes / 2;
 
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
@@ -65,6 +67,18 @@ std::string codes_yaml(const std::vector<ColumnCode>& codes) {
 /// Returns `text` as a YAML comment on one line; line breaks are replaced.
 std::string comment(std::string_view text) {
   return "# " + document::shown(text, 400) + "\n";
+}
+
+/// Returns the remarks as comments. Remarks that would exceed `most_comment_bytes` are counted instead.
+std::string comments(const std::vector<std::string>& remarks) {
+  std::string text;
+  for (std::size_t i = 0; i < remarks.size(); ++i) {
+    const std::string line = comment(remarks[i]);
+    if (text.size() + line.size() > most_comment_bytes)
+      return text + comment("messages that are not in this file: " + std::to_string(remarks.size() - i));
+    text += line;
+  }
+  return text;
 }
 
 class MappingReader {
@@ -198,7 +212,7 @@ std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, con
   text += comment("file: " + source.file + " (" + source.format + ")");
   text += comment("sha256: " + source.sha256);
   text += comment("by " + software);
-  for (const std::string& remark : remarks) text += comment(remark);
+  text += comments(remarks);
   text += "schema: 1\n";
   for (const RoleSpec& spec : roles) {
     if (mapping[spec.role].given())

@@ -121,8 +121,9 @@ struct ImportSource {
   std::string format;
 };
 
-/// Returns the mapping as YAML text, which parse_mapping() converts back to the same mapping. `remarks` are
-/// written above the mapping as comments.
+/// Returns the mapping as YAML text, which parse_mapping() converts back to the same mapping. The names of
+/// the columns must be UTF-8 without control characters. `remarks` are written above the mapping as comments
+/// of at most 32 KiB. A comment states the number of remarks that are left out.
 [[nodiscard]] std::string mapping_yaml(const Mapping& mapping, const ImportSource& source,
                                        const std::string& software, const std::vector<std::string>& remarks);
 

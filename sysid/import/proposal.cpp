@@ -148,8 +148,10 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   if (!time.given() || time.columns.size() > 1) return;
   const std::size_t chosen = column_index(table, time.columns.front());
   std::vector<std::size_t> times;
+  Mapping unscaled = proposal.mapping;  // the scale applies to the mapped columns only
+  unscaled[Role::time].scale.reset();
   for (const std::size_t index : time_columns(table)) {
-    const bool differs = index == chosen || !same_clock(table, proposal.mapping, chosen, index);
+    const bool differs = index == chosen || !same_clock(table, unscaled, chosen, index);
     if (differs && choice.offers(table.columns[index]) &&
         (index == chosen || !taken(proposal.mapping, table, index)))
       times.push_back(index);

@@ -41,14 +41,14 @@ const std::array<Words, role_count>& words() {
 }
 
 /// Words for values that are derived from a quantity.
-constexpr std::array<std::string_view, 33> derived_words{
-    "error",           "err",          "fehler",      "deviation",  "abweichung",
-    "regelabweichung", "diff",         "differenz",   "difference", "minus",
-    "residual",        "residuals",    "resid",       "rate",       "dot",
-    "deriv",           "derivative",   "speed",       "velocity",   "vel",
-    "geschwindigkeit", "acceleration", "slope",       "gradient",   "std",
-    "stdev",           "stddev",       "sigma",       "variance",   "noise",
-    "rauschen",        "uncertainty",  "unsicherheit"};
+constexpr std::array<std::string_view, 34> derived_words{
+    "age",        "error",           "err",          "fehler",      "deviation",
+    "abweichung", "regelabweichung", "diff",         "differenz",   "difference",
+    "minus",      "residual",        "residuals",    "resid",       "rate",
+    "dot",        "deriv",           "derivative",   "speed",       "velocity",
+    "vel",        "geschwindigkeit", "acceleration", "slope",       "gradient",
+    "std",        "stdev",           "stddev",       "sigma",       "variance",
+    "noise",      "rauschen",        "uncertainty",  "unsicherheit"};
 /// Words that state a derived value only at the end of a name: "p_dev" is a deviation, but "dev1_p" may be
 /// the pressure of a device.
 constexpr std::array<std::string_view, 3> derived_endings{"dev", "var", "acc"};

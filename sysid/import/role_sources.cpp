@@ -82,20 +82,24 @@ class SourceResolver {
     } else {
       refuse_bad_cells(spec, column);
     }
-    if (!column.ambiguous_comma.empty())
-      refuse(
-          std::string(spec.word) + ": the comma in the cell '" + document::shown(column.ambiguous_comma, 40) +
-              "' of '" + document::shown(named, 40) +
-              "' can be a decimal comma or separate thousands, because the numbers of this column do not all "
-              "have one comma",
-          "export the file without thousands separators. If the comma is a decimal comma, export the same "
-          "number of decimals in each cell");
+    if (!column.ambiguous_mark.empty()) refuse_mark(spec, named, column.ambiguous_mark);
     const bool time = spec.role == Role::time;
     const auto numbers = static_cast<std::size_t>(
         std::count_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); }));
     if (column.moments > 0 && (!time || numbers != column.moments))
       refuse(std::string(spec.word) + ": '" + document::shown(column.name) + "' has dates or times of day" +
              (time ? " and numbers" : ""));
+  }
+
+  /// Refuses a column whose decimal mark can also separate thousands.
+  /// @param cell  cell with such a mark.
+  void refuse_mark(const RoleSpec& spec, const std::string& named, const std::string& cell) {
+    const std::string mark = cell.find(',') != std::string::npos ? "comma" : "point";
+    refuse(std::string(spec.word) + ": the " + mark + " in the cell '" + document::shown(cell, 40) +
+               "' of '" + document::shown(named, 40) + "' can be a decimal " + mark +
+               " or separate thousands, because the numbers of this column do not all have one " + mark,
+           "export the file without thousands separators. If the " + mark + " is a decimal " + mark +
+               ", export the same number of decimals in each cell");
   }
 
   void refuse_bad_cells(const RoleSpec& spec, const TableColumn& column) {

@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "base/text.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -131,6 +132,49 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
          significant(rate) + " instead of --time keeps every row";
 }
 
+/// Returns the index of the first sample of each segment between two gaps, and then the number of samples.
+std::vector<std::size_t> edges_at_holes(const ForeignSamples& samples) {
+  const std::vector<double>& time_s = samples[Role::time];
+  const std::vector<double>& command = samples[Role::command];
+  const double long_s = std::max(hole_s, hole_intervals * usual_interval_s(time_s));
+  const double change_kpa = hole_change * width_of(command);
+  std::vector<std::size_t> edges{0};
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (time_s[i] - time_s[i - 1] > long_s && std::abs(command[i] - command[i - 1]) > change_kpa)
+      edges.push_back(i);
+  }
+  edges.push_back(samples.size());
+  return edges;
+}
+
+/// Returns the index of the longest segment.
+/// @param edges  result of edges_at_holes().
+std::size_t longest_segment(const std::vector<double>& time_s, const std::vector<std::size_t>& edges) {
+  const auto length_s = [&](std::size_t k) { return time_s[edges[k + 1] - 1] - time_s[edges[k]]; };
+  std::size_t longest = 0;
+  for (std::size_t k = 1; k + 1 < edges.size(); ++k) {
+    if (length_s(k) > length_s(longest)) longest = k;
+  }
+  return longest;
+}
+
+/// Times of the first and the last sample of a segment, relative to the first sample of the file [s].
+struct Segment {
+  double begin_s = 0;
+  double end_s = 0;
+
+  [[nodiscard]] std::string text() const { return written(begin_s) + " to " + written(end_s) + " s"; }
+};
+
+/// Returns the segment from sample `first` to the sample before `last`.
+Segment segment_of(const ForeignSamples& samples, std::size_t first, std::size_t last) {
+  // The options count from the first sample of the file.
+  const auto in_file = [&](std::size_t i) {
+    return rounded(samples.begin_s + samples[Role::time][i], finest_s);
+  };
+  return {in_file(first), in_file(last - 1)};
+}
+
 }  // namespace
 
 std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
@@ -215,38 +259,24 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
 }
 
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
-  const std::vector<double>& time_s = samples[Role::time];
-  const std::vector<double>& command = samples[Role::command];
-  const double long_s = std::max(hole_s, hole_intervals * usual_interval_s(time_s));
-  const double change_kpa = hole_change * width_of(command);
-  std::vector<std::size_t> edges{0};
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (time_s[i] - time_s[i - 1] > long_s && std::abs(command[i] - command[i - 1]) > change_kpa)
-      edges.push_back(i);
+  std::vector<Segment> others;
+  std::size_t gaps = 0;
+  for (auto edges = edges_at_holes(samples); edges.size() > 2; edges = edges_at_holes(samples)) {
+    gaps += edges.size() - 2;
+    const std::size_t longest = longest_segment(samples[Role::time], edges);
+    for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+      if (k != longest) others.push_back(segment_of(samples, edges[k], edges[k + 1]));
+    }
+    remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
+    keep_range(samples, edges[longest], edges[longest + 1]);
+    begin_at_first(samples);
   }
-  if (edges.size() == 1) return;
-  edges.push_back(samples.size());
-  std::size_t longest = 0;
-  const auto length_s = [&](std::size_t k) { return time_s[edges[k + 1] - 1] - time_s[edges[k]]; };
-  for (std::size_t k = 1; k + 1 < edges.size(); ++k) {
-    if (length_s(k) > length_s(longest)) longest = k;
-  }
-  // The options count from the first sample of the file.
-  const auto in_file = [&](std::size_t i) { return written(rounded(samples.begin_s + time_s[i], finest_s)); };
-  const auto segment = [&](std::size_t k) {
-    return in_file(edges[k]) + " to " + in_file(edges[k + 1] - 1) + " s";
-  };
-  std::string others;
-  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
-    if (k != longest) others += (others.empty() ? "" : ", ") + segment(k);
-  }
-  remarks.notes.push_back("the command changed during " + std::to_string(edges.size() - 2) +
-                          (edges.size() == 3 ? " gap" : " gaps") +
-                          ", so only the longest segment is kept: " + segment(longest) +
-                          "; to select another segment, use --from-s and --to-s: " + others);
-  remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
-  keep_range(samples, edges[longest], edges[longest + 1]);
-  begin_at_first(samples);
+  if (gaps == 0) return;
+  std::ranges::sort(others, {}, &Segment::begin_s);
+  remarks.notes.push_back(
+      "the command changed during " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
+      ", so only the longest segment is kept: " + segment_of(samples, 0, samples.size()).text() +
+      "; to select another segment, use --from-s and --to-s: " + with_commas(others, &Segment::text));
 }
 
 }  // namespace softgrip::sysid

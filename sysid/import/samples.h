@@ -62,8 +62,9 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks);
 /// Keeps the longest segment between two gaps and reports the other segments. The reported times count from
 /// the first sample of the file, as the options --from-s and --to-s do. A gap is an interval between
 /// two samples that fulfils three conditions: it is longer than 0.5 s, it is longer than 20 usual intervals,
-/// and the command changes during this interval by more than 2 % of the range of all commands. The motion of
-/// the finger during a gap is unknown.
+/// and the command changes during this interval by more than 2 % of the range of all commands. The usual
+/// interval and the range of the kept segment differ from those of the file, so the kept segment is searched
+/// for gaps again until it contains none. The motion of the finger during a gap is unknown.
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks);
 
 }  // namespace softgrip::sysid

@@ -52,9 +52,9 @@ struct TableColumn {
   /// True if the nanoseconds in this column were added to the times of another column (moments.h).
   bool is_part_of_time = false;
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
-  /// A cell such as "20,000", whose comma can be a decimal comma or separate thousands (cell_value.h);
-  /// empty: the commas of this column have a clear meaning.
-  std::string ambiguous_comma;
+  /// A cell such as "20,000" or "1.234", whose mark can be a decimal mark or separate thousands
+  /// (cell_value.h); empty: the marks of this column have a clear meaning.
+  std::string ambiguous_mark;
   std::vector<BadCell> bad;  ///< the first cells of the column that could not be read
   std::size_t bad_count = 0;
   /// All rows in which the cell of this column cannot be read. The list is filled only if the options request

@@ -46,11 +46,18 @@ bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
 
-/// Result for one separator: `width` is the probable number of columns, and `values` is the number of cells
-/// with a value in the rows of this width.
+/// Result for one separator: `width` is the probable number of columns, `cells` is the number of cells in the
+/// rows of this width, and `values` is the number of these cells that have a value.
 struct Fit {
   std::size_t values = 0;
+  std::size_t cells = 0;
   std::size_t width = 0;
+
+  /// Returns true if this separator fits better than the other separator. If both give equally many values,
+  /// the separator that gives fewer other cells fits better.
+  [[nodiscard]] bool is_better_than(const Fit& other) const {
+    return values > other.values || (values == other.values && cells < other.cells);
+  }
 };
 Fit fit_of(char separator, const std::vector<TextLine>& sample, const TableOptions& options) {
   std::map<std::size_t, Fit> by_width;
@@ -60,6 +67,7 @@ Fit fit_of(char separator, const std::vector<TextLine>& sample, const TableOptio
     if (row.cells < 2 || !is_data(row, row.cells)) continue;
     Fit& fit = by_width[row.cells];
     fit.values += row.values;
+    fit.cells += row.cells;
     fit.width = row.cells;
   }
   Fit best;
@@ -332,7 +340,7 @@ std::optional<Dialect> dialect_of(const std::string& file, const TextLines& line
   for (const char separator : separators) {
     if (options.separator != 0 && separator != options.separator) continue;
     const Fit fit = fit_of(separator, sample, options);
-    if (fit.values <= best.values) continue;
+    if (!fit.is_better_than(best)) continue;
     best = fit;
     dialect.separator = separator;
   }

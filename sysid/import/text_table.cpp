@@ -85,7 +85,7 @@ class RowReader {
 
   void finish() {
     for (std::size_t i = 0; i < dialect_.width; ++i)
-      table_.columns[i].ambiguous_comma = commas_[i].ambiguous_cell(table_.columns[i].values);
+      table_.columns[i].ambiguous_mark = marks_[i].ambiguous_cell(table_.columns[i].values);
     continue_clocks();
     if (skipped_.empty()) return;
     std::string lines;
@@ -240,7 +240,7 @@ class RowReader {
     TableColumn& column = table_.columns[i];
     if (i == date_column_ && date_.is_readable()) return column.values.push_back(missing_value);
     const CellValue cell = cell_value(cells_[i].text, options_.missing);
-    commas_[i].add(cell, cells_[i].text);
+    marks_[i].add(cell, cells_[i].text);
     if (cell.with_comma && comma_.number == 0) comma_ = line;
     if (cell.with_point && point_.number == 0) point_ = line;
     switch (cell.kind) {
@@ -277,7 +277,7 @@ class RowReader {
   ForeignTable& table_;
   LogReporter& report_;
   std::vector<TextClock> clocks_;
-  std::vector<DecimalCommas> commas_{dialect_.width};
+  std::vector<DecimalMarks> marks_{dialect_.width};
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
   /// True: the column that identifies the finger has the same name as in a log.

@@ -116,6 +116,20 @@ class UnusedParts {
     }
   }
 
+  /// Returns the reason why --unit has no effect on the time columns; "" if it has an effect.
+  [[nodiscard]] std::string why_no_unit_of_time() const {
+    const std::vector<std::size_t>& times = sources_.of_roles[static_cast<std::size_t>(Role::time)].columns;
+    const auto has_moments = [&](std::size_t i) {
+      return table_.columns[i].moments > 0 && table_.columns[i].short_clocks == 0;
+    };
+    const auto states_unit = [&](std::size_t i) {
+      return has_moments(i) || !stated_unit(table_.columns[i], Quantity::time).empty();
+    };
+    if (std::ranges::all_of(times, has_moments)) return "the column has dates or times of day";
+    const bool all_state = times.size() > 1 && std::ranges::all_of(times, states_unit);
+    return all_state ? "each time column states its unit" : "";
+  }
+
   void idle(const std::string& option, const std::string& why) {
     remarks_.warnings.push_back(option + " has no effect: " + why);
   }
@@ -126,16 +140,14 @@ class UnusedParts {
       const ColumnMapping& mapped = mapping_[spec.role];
       const std::string word = " " + std::string(spec.word) + "=";
       const bool time = spec.role == Role::time;
-      const bool dates = time && mapped.given() &&
-                         table_.columns[sources_.of_roles[0].columns.front()].moments > 0 &&
-                         table_.columns[sources_.of_roles[0].columns.front()].short_clocks == 0;
+      const std::string stated = time && mapped.given() ? why_no_unit_of_time() : "";
       const std::string why =
           mapped.given() ? "" : "no column is assigned to the role " + std::string(spec.word);
       const bool scaled = mapped.scale && !angle_of_scale(spec, mapped);
-      if (!mapped.unit.empty() && (!mapped.given() || scaled || dates))
+      if (!mapped.unit.empty() && (!mapped.given() || scaled || !stated.empty()))
         idle("--unit" + word + mapped.unit, !why.empty() ? why
                                             : scaled     ? "--scale replaces the unit"
-                                                         : "the column has dates or times of day");
+                                                         : stated);
       if (mapped.scale && !mapped.given()) idle("--scale" + word + shortest(*mapped.scale), why);
       if ((mapped.zero || mapped.zero_first) && (!mapped.given() || time))
         idle("--zero" + word + (mapped.zero ? shortest(*mapped.zero) : "first"),

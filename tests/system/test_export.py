@@ -103,6 +103,20 @@ class Signals(bench.BenchTest):
                       f"{name[:58]}_3", "--unit", "displacement=mm", "--out", "log.csv")
         self.assertEqual(columns_of(self.folder / "log.csv")["displacement_mm"], [3 + i % 50 for i in range(200)])
 
+    def test_cells_of_other_columns_keep_their_digits(self):
+        rows = ["time_s,pressure_command_kpa,displacement_mm,stamp_ns,serial,gain"]
+        rows += [f"{0.01 * i:.2f},{i % 50},{0.1 * (i % 50):.1f},{1717149600123456790 + i},0007,1.50" for i in range(200)]
+        self.write("ids.csv", "\n".join(rows) + "\n")
+        self.export("ids_wide.csv", source="ids.csv")
+        with open(self.folder / "ids_wide.csv", newline="") as file:
+            row = list(csv.DictReader(file))[1]
+        self.assertEqual([row["stamp_ns"], row["serial"], row["gain"]], ["1717149600123456791", "0007", "1.50"])
+        done = self.export("ids.mat", "--json", source="ids.csv")
+        self.assertEqual(json.loads(done.stdout)["left_out"], ["stamp_ns", "serial"])
+        self.export("ids.mcap", source="ids.csv")
+        _, message = mcap_reading.read(self.folder / "ids.mcap")["/signals"][1]
+        self.assertEqual([message["stamp_ns"], message["serial"], message["gain"]], ["1717149600123456791", "0007", 1.5])
+
     def test_mcap_follows_the_specification(self):
         self.export("run.mcap")
         topics = mcap_reading.read(self.folder / "run.mcap")

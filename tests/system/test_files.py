@@ -281,6 +281,43 @@ class Bombs(bench_files.Files):
         self.assertIn("'chunk' is skipped: the chunks of the dataset have more than 256 MiB", said)
 
 
+class Groups(bench_files.Files):
+    """Tests HDF5 files whose groups cannot be read."""
+
+    def write_columns(self, file):
+        for name, scale in (("time_s", 0.1), ("pressure_command_kpa", 1), ("displacement_mm", 0.5)):
+            file[name] = [i * scale for i in range(50)]
+
+    def damage(self, index):
+        """Overwrites the signature of one symbol table node of a.h5."""
+        content = bytearray((self.folder / "a.h5").read_bytes())
+        nodes = [match.start() for match in re.finditer(b"SNOD", content)]
+        content[nodes[index]:nodes[index] + 4] = b"XXXX"
+        (self.folder / "damaged.h5").write_bytes(content)
+
+    def test_a_damaged_hdf5_group_is_rejected(self):
+        with self.h5py().File(self.folder / "a.h5", "w") as file:
+            self.write_columns(file)
+            file["laser/tip_mm"] = [float(i) for i in range(50)]
+        self.limited("import", "a.h5", "--yes", "--out", "log.csv", code=0)
+        (self.folder / "log.csv").unlink()
+        messages = []
+        for index in (0, 1):
+            self.damage(index)
+            messages.append(self.limited("import", "damaged.h5", "--yes", "--out", "log.csv", code=3))
+            self.assertFalse((self.folder / "log.csv").exists())
+        self.assertIn("the group '/' cannot be read", "".join(messages))
+        self.assertIn("the group 'laser' cannot be read", "".join(messages))
+
+    def test_an_hdf5_group_below_8_other_groups_is_named(self):
+        path = "/".join(f"g{i}" for i in range(9))
+        with self.h5py().File(self.folder / "a.h5", "w") as file:
+            self.write_columns(file)
+            file[path + "/laser_mm"] = [float(i) for i in range(50)]
+        self.limited("import", "a.h5", "--yes", "--out", "log.csv", code=0)
+        self.assertIn(f"'{path}' is skipped: only 8 levels of groups are read", (self.folder / "log.import.yaml").read_text())
+
+
 class OtherFiles(bench_files.Files):
     """Tests HDF5 files that refer to other files. The log must not contain data of these other files."""
 

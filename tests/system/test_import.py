@@ -166,6 +166,36 @@ class Import(bench.BenchTest):
         self.imported("own.mcap", "--out", "back.csv", "--yes")
         self.assertEqual((self.folder / "own.csv").read_bytes(), (self.folder / "back.csv").read_bytes())
 
+    def test_an_exported_recording_is_imported_from_every_format(self):
+        """The recording has the column age_s, which is constant except for its first value and is not a time."""
+        self.softgrip("run", "config/sequences/pick_stone.yaml", "--virtual-time", "--record", "rec", "--no-socket")
+        ages = {row.split(",")[10] for row in (self.folder / "rec/run.csv").read_text().splitlines()[1:]}
+        self.assertGreater(len(ages), 1)
+        logs = []
+        for ending in ("csv", "mat", "mcap"):
+            self.softgrip("export", "rec", "--out", f"run.{ending}")
+            self.imported(f"run.{ending}", "--out", f"{ending}_log.csv", "--yes", "--channel", "left")
+            logs.append((self.folder / f"{ending}_log.csv").read_bytes())
+        self.assertEqual(logs[0], logs[1])
+        self.assertEqual(logs[0], logs[2])
+
+    def test_the_stored_mapping_of_any_file_can_be_read(self):
+        rows = [f"{0.01 * i:.2f},{30 - abs(i % 100 - 50) * 0.6},{0.2 * i % 7:.3f}" for i in range(200)]
+        many = "".join(f",extra_signal_with_a_long_name_{i:04}" for i in range(2500))
+        for header, cells in (("time_s,set_kpa,tip_mm" + many, ",1" * 2500), ("time_s,set\x01_kpa,tip_mm", ""),
+                              ("time_s,set_kpa,tip_" + "m" * 70_000 + "_mm", "")):
+            with self.subTest(header[:40]):
+                self.write("any.csv", "\n".join([header, *(row + cells for row in rows)]) + "\n")
+                self.imported("any.csv", "--out", "a.csv", "--yes")
+                self.imported("any.csv", "--out", "b.csv", "--map", "a.import.yaml")
+                self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
+
+    def test_no_mapping_is_written_next_to_a_device(self):
+        self.foreign("names_psi.csv")
+        (self.folder / "sink").symlink_to("/dev/null")
+        self.imported("names_psi.csv", "--out", "sink", "--yes")
+        self.assertFalse((self.folder / "sink.import.yaml").exists())
+
     def test_an_imported_log_has_the_validation_error_of_the_original(self):
         self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
                       "--rate-hz", "50")

@@ -40,7 +40,7 @@ std::vector<Column> columns_of(const SignalGroup& group, std::vector<std::string
   std::vector<Column> columns{{"time_s", &group.time_s}};
   std::set<std::string> used{"time_s"};
   for (const Signal& signal : group.signals) {
-    if (!signal.texts.empty()) {
+    if (signal.is_text()) {
       left_out.push_back(signal.name);
       continue;
     }

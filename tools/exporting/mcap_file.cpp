@@ -73,7 +73,7 @@ std::string json_of(const SignalGroup& group, std::size_t row, const std::vector
   std::string json = "{\"time_s\":" + shortest(group.time_s[row]);
   for (std::size_t k = 0; k < group.signals.size(); ++k) {
     const Signal& signal = group.signals[k];
-    if (!signal.texts.empty()) {
+    if (signal.is_text()) {
       json += "," + keys[k] + ":" + json_text(signal.texts[row]);
     } else if (std::isfinite(signal.values[row])) {
       json += "," + keys[k] + ":" + shortest(signal.values[row]);
@@ -85,7 +85,7 @@ std::string json_of(const SignalGroup& group, std::size_t row, const std::vector
 std::string schema_of(const SignalGroup& group) {
   nlohmann::ordered_json properties{{"time_s", {{"type", "number"}}}};
   for (const Signal& signal : group.signals)
-    properties[signal.name] = {{"type", signal.texts.empty() ? "number" : "string"}};
+    properties[signal.name] = {{"type", signal.is_text() ? "string" : "number"}};
   return json_dump(nlohmann::ordered_json{{"type", "object"}, {"properties", properties}});
 }
 

@@ -20,12 +20,22 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Converts a column to numbers if each cell is a number or empty. Otherwise converts it to texts.
+/// Returns true if a cell is a whole number that a double does not represent with all its digits: more than
+/// 15 digits, or a leading zero.
+bool loses_digits(std::string_view cell) {
+  constexpr std::size_t most_digits = 15;
+  if (cell.starts_with('-') || cell.starts_with('+')) cell.remove_prefix(1);
+  const bool is_whole = cell.find_first_not_of("0123456789") == std::string_view::npos;
+  return is_whole && (cell.size() > most_digits || (cell.size() > 1 && cell.front() == '0'));
+}
+
+/// Converts a column to numbers if each cell is a number without loss of digits, or empty. Otherwise converts
+/// it to texts.
 Signal signal_of(const sysid::OtherColumn& column) {
-  Signal signal{column.name, {}, {}};
+  Signal signal{column.name, {}, column.cells};
   for (const std::string& cell : column.cells) {
     const auto number = to_number(cell);
-    if (!number && !cell.empty()) return {column.name, {}, column.cells};
+    if ((!number && !cell.empty()) || loses_digits(cell)) return {column.name, {}, column.cells};
     signal.values.push_back(number.value_or(nothing));
   }
   return signal;
@@ -112,17 +122,11 @@ SignalGroup wide(const std::vector<SignalGroup>& groups) {
                                              all.time_s.begin()));
     for (const Signal& signal : group.signals) {
       Signal spread{group.name.empty() ? signal.name : group.name + "_" + signal.name, {}, {}};
-      if (signal.texts.empty()) {
-        spread.values.assign(all.time_s.size(), nothing);
-      } else {
-        spread.texts.resize(all.time_s.size());
-      }
+      if (!signal.is_text()) spread.values.assign(all.time_s.size(), nothing);
+      if (!signal.texts.empty()) spread.texts.resize(all.time_s.size());
       for (std::size_t i = 0; i < row.size(); ++i) {
-        if (signal.texts.empty()) {
-          spread.values[row[i]] = signal.values[i];
-        } else {
-          spread.texts[row[i]] = signal.texts[i];
-        }
+        if (!signal.is_text()) spread.values[row[i]] = signal.values[i];
+        if (!signal.texts.empty()) spread.texts[row[i]] = signal.texts[i];
       }
       all.signals.push_back(std::move(spread));
     }

@@ -15,7 +15,11 @@ struct Signal {
   std::string name;                ///< name of the column, for example "displacement_mm" or "state"
   std::vector<double> values;      ///< one number per sample, NaN if it is missing; empty if the signal
                                    ///< consists of texts
-  std::vector<std::string> texts;  ///< one text per sample; empty if the signal consists of numbers
+  std::vector<std::string> texts;  ///< one text per sample: the content of the cell in the input; empty if
+                                   ///< the cells are not stored
+
+  /// Returns true if the signal consists of texts.
+  [[nodiscard]] bool is_text() const { return values.empty() && !texts.empty(); }
 };
 
 /// The signals of one finger, or all signals of a file without channels.
@@ -33,7 +37,8 @@ struct SignalGroup {
 /// signal and finger, for example "left_displacement_mm". A missing sample is NaN or an empty text.
 [[nodiscard]] SignalGroup wide(const std::vector<SignalGroup>& groups);
 
-/// Returns the CSV text of a group: time_s and its signals. Missing values are empty cells.
+/// Returns the CSV text of a group: time_s and its signals. Missing values are empty cells. Stored cells of
+/// the input are written unchanged.
 [[nodiscard]] std::string wide_csv(const SignalGroup& group);
 
 /// The bytes of a .mat file, and the names of the omitted signals, whose values are texts.

@@ -139,8 +139,14 @@ tl::expected<std::vector<std::string>, std::string> import_targets(const std::ve
 tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options, sysid::Mapping begun) {
   sysid::Mapping mapping = std::move(begun);
   for (std::size_t i = 0; i < sysid::role_count; ++i) {
-    if (!options.columns[i].empty()) mapping.columns[i].columns = options.columns[i];
+    // Unit, scale and zero of the mapping belong to the columns of the mapping, and not to other columns.
+    const bool is_same = options.columns[i].empty() || options.columns[i] == mapping.columns[i].columns;
+    if (!is_same) mapping.columns[i] = {options.columns[i], {}, {}, {}, false};
   }
+  sysid::ColumnMapping& time = mapping[sysid::Role::time];
+  const bool has_time = !options.columns[static_cast<std::size_t>(sysid::Role::time)].empty();
+  if (options.rate_hz && !has_time) time = {};
+  if (has_time && !options.rate_hz) mapping.rate_hz.reset();
   const auto take_unit = [](sysid::ColumnMapping& column, const std::string& text) {
     column.unit = text;
     return true;
@@ -152,7 +158,7 @@ tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& option
   if (auto done = apply(options.zeros, "--zero", "a number or the word first", mapping, take_zero); !done)
     return tl::unexpected(done.error());
   if (options.rate_hz) mapping.rate_hz = options.rate_hz;
-  if (mapping.rate_hz && mapping[sysid::Role::time].given())
+  if (mapping.rate_hz && time.given())
     return tl::unexpected(std::string(
         "--time and --rate-hz cannot be given together, because a file with a time column needs no rate"));
   const auto codes = codes_of(options.missing_in);

@@ -191,19 +191,38 @@ std::vector<std::string> notes_of(const Job& job) {
   return notes;
 }
 
+/// Returns the word for a column in the mapping file: the name or, if the file cannot contain the name, the
+/// number of the column.
+std::string readable_name(const sysid::ForeignTable& table, const std::string& word) {
+  constexpr std::size_t longest_name = 1000;
+  if (word.size() <= longest_name && document::shown(word, word.size()) == word) return word;
+  const std::size_t index = sysid::column_index(table, word);
+  const std::string number = std::to_string(index + 1);
+  return index < table.columns.size() && sysid::column_index(table, number) == index ? number : word;
+}
+
+sysid::Mapping with_readable_names(const sysid::ForeignTable& table, sysid::Mapping mapping) {
+  for (sysid::ColumnMapping& column : mapping.columns) {
+    for (std::string& word : column.columns) word = readable_name(table, word);
+  }
+  for (sysid::ColumnCode& code : mapping.missing_in) code.column = readable_name(table, code.column);
+  return mapping;
+}
+
 std::string mapping_path(const std::string& out) {
   return std::filesystem::path(out).replace_extension(".import.yaml").string();
 }
 
 tl::expected<void, std::string> write(const Job& job) {
   if (auto written = write_output(job.out, sysid::format_log(job.result.log)); !written) return written;
-  if (job.out == "-" || job.is_log) return {};
+  if (is_stream(job.out) || job.is_log) return {};
   std::vector<std::string> remarks = notes_of(job);
   remarks.push_back(job.result.account.sentence());
   for (const std::string& warning : job.warnings) remarks.push_back("warning: " + warning);
   for (const std::string& implausible : job.plausibility) remarks.push_back("warning: " + implausible);
   return write_file(mapping_path(job.out),
-                    sysid::mapping_yaml(job.mapping, {job.file, job.table.sha256, job.table.format},
+                    sysid::mapping_yaml(with_readable_names(job.table, job.mapping),
+                                        {job.file, job.table.sha256, job.table.format},
                                         "softgrip " + std::string(software_version()), remarks));
 }
 
@@ -270,7 +289,7 @@ std::optional<ExitCode> refuse_own_inputs(const ImportOptions& options,
                                           const std::vector<std::string>& targets) {
   std::vector<std::string> outputs = targets;
   for (const std::string& target : targets) {
-    if (target != "-") outputs.push_back(mapping_path(target));
+    if (!is_stream(target)) outputs.push_back(mapping_path(target));
   }
   if (const auto code = refuse_overwriting(outputs, options.files)) return code;
   return refuse_overwriting(targets, {options.map});

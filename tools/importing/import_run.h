@@ -50,8 +50,10 @@ ExitCode run_import(const ImportOptions& options);
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> import_targets(
     const std::vector<std::string>& files, const std::string& out);
 
-/// Returns the mapping `begun`, completed with the settings of the options. On failure, returns a sentence
-/// that describes the error.
+/// Returns the mapping `begun`, completed with the settings of the options. If the options give other columns
+/// for a role, its unit, scale and zero in `begun` are not used. A rate in the options replaces the time
+/// columns of `begun`, and time columns in the options replace its rate. On failure, returns a sentence that
+/// describes the error.
 [[nodiscard]] tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options,
                                                                    sysid::Mapping begun);
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/numbers.h"
+#include "sysid/import/proposal.h"
 #include "sysid/import/table_readers.h"
 
 namespace softgrip::sysid::clock_test {
@@ -81,6 +82,14 @@ TEST(SameClock, SeparatesADelayFromAnotherUnitOrOrigin) {
   }
 }
 
+TEST(SameClock, AScaleDoesNotMakeTwoClocksOfOne) {
+  Mapping given;
+  given[Role::time].scale = 0.1;
+  const Proposal proposal = propose(table_of(two_times(1, 0)), given, true);
+  EXPECT_EQ(proposal.mapping[Role::time].columns, std::vector<std::string>{"time_s"});
+  EXPECT_TRUE(proposal.questions.empty()) << proposal.questions.front().text;
+}
+
 TEST(TimesOfRoles, NameTakesPrecedenceOverColumnOrder) {
   const auto times_of = [](const std::string& header) {
     const ForeignTable table = table_of(header + "\n0,0,0,0\n1,1,1,1\n2,2,2,2\n");
@@ -102,6 +111,30 @@ TEST(SecondsOf, UsesTheUnitOfEachColumn) {
   EXPECT_EQ(seconds_of(table, {}, 0), (std::vector<double>{1, 2}));
   EXPECT_EQ(seconds_of(table, {}, 1), (std::vector<double>{1, 2}));
   EXPECT_FALSE(seconds_of(table, {}, 2));
+}
+
+TEST(SecondsOf, AScaleReplacesTheUnitsOfTheMappedTimes) {
+  const ForeignTable table = table_of("a_time_s,b_time_ms,c_time_s,x_time\n1,1000,1,5\n2,2000,2,6\n");
+  Mapping mapping;
+  mapping[Role::time].columns = {"a_time_s", "b_time_ms", "x_time"};
+  mapping[Role::time].scale = 0.1;
+  EXPECT_EQ(seconds_of(table, mapping, 0), (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(seconds_of(table, mapping, 1), (std::vector<double>{100, 200}));
+  EXPECT_EQ(seconds_of(table, mapping, 2), (std::vector<double>{1, 2})) << "this time is not mapped";
+  EXPECT_EQ(seconds_of(table, mapping, 3), (std::vector<double>{0.5, 0.6000000000000001}));
+}
+
+TEST(TimeColumns, AColumnWithFewRisesIsNoTime) {
+  std::string text = "time_s,coarse_s,held_s\n";
+  for (int i = 0; i < 100; ++i)
+    text += shortest(0.02 * i) + "," + std::to_string(i / 25) + "," + (i < 2 ? "0" : "0.1") + "\n";
+  EXPECT_EQ(time_columns(table_of(text)), (std::vector<std::size_t>{0, 1}));
+}
+
+TEST(TimeColumns, StepsOfZeroAreNoRises) {
+  std::string text = "time_s,mixed_s\n";
+  for (int i = 0; i < 100; ++i) text += shortest(0.02 * i) + "," + (i % 20 < 10 ? "0.1" : "0.2") + "\n";
+  EXPECT_EQ(time_columns(table_of(text)), std::vector<std::size_t>{0});
 }
 
 }  // namespace

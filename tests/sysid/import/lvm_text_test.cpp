@@ -75,6 +75,36 @@ TEST(Lvm, DifferingOrTruncatedSectionsAreReported) {
   EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
 }
 
+TEST(Lvm, LinesWithTooManyCellsAreRefusedOrLeftOut) {
+  const std::string rows = "0\t1\t2\n0,5\t3\t77\t88\t4\n1\t5\t6\tnote\t\n1,5\t7\t8\n";
+  document::Problems problems;
+  EXPECT_FALSE(read_lvm("t.lvm", header("One") + section("12:00:00", rows), {}, problems));
+  EXPECT_NE(problems.format().find("this line has 5 cells, but the table has 3 columns"), std::string::npos)
+      << problems.format();
+  TableOptions skipping;
+  skipping.skip_bad_lines = true;
+  const ForeignTable table = table_of(header("One") + section("12:00:00", rows), skipping);
+  EXPECT_EQ(table.columns[2].values, (std::vector<double>{2, 6, 8}));
+  EXPECT_EQ(table.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)], 1U);
+}
+
+TEST(Lvm, OnlyATableWithCommentsHasAFurtherCell) {
+  const std::string text = header("One") + section("12:00:00", "0\t1\t2\n1\t3\t4\t5\n", "X_Value\tSet\tTip");
+  document::Problems problems;
+  EXPECT_FALSE(read_lvm("t.lvm", text, {}, problems));
+  EXPECT_NE(problems.format().find("this line has 4 cells, but the table has 3 columns"), std::string::npos)
+      << problems.format();
+}
+
+TEST(Lvm, ASeparatorThatIsTheDecimalMarkIsRefused) {
+  document::Problems problems;
+  EXPECT_FALSE(read_lvm("t.lvm", header("One", "Comma") + section("12:00:00", "0,020,0,0074,0,00044\n"), {},
+                        problems));
+  EXPECT_NE(problems.format().find("t.lvm:3:1: the header states that commas separate the columns"),
+            std::string::npos)
+      << problems.format();
+}
+
 /// The limits on rows and file size are the same for a LabVIEW text file and for every other text file.
 TEST(Lvm, HasTheSizeLimitsOfATextFile) {
   document::Problems problems;

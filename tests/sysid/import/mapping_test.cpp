@@ -32,6 +32,15 @@ TEST(MappingFile, WrittenMappingIsReadBackUnchanged) {
   EXPECT_NE(text.find("  - {column: \"p1\", values: [999, -0.5]}\n"), std::string::npos) << text;
 }
 
+TEST(MappingFile, MessagesDoNotExceedTheSizeOfAMappingFile) {
+  const std::vector<std::string> remarks(1000, std::string(300, 'x'));
+  const std::string text = mapping_yaml(full(), {"a.csv", "0123", "CSV"}, "softgrip 1", remarks);
+  EXPECT_LT(text.size(), std::size_t{40} * 1024);
+  EXPECT_NE(text.find("# messages that are not in this file: 892\n"), std::string::npos);
+  document::Problems problems;
+  EXPECT_EQ(parse_mapping("m.yaml", text, problems), full()) << problems.format();
+}
+
 TEST(MappingFile, ErrorsStateTheLocation) {
   const auto refused = [](const std::string& text) {
     document::Problems problems;

@@ -35,6 +35,7 @@ TEST(RoleFit, ADerivedValueIsNoReading) {
     EXPECT_EQ(fitness_for(column(name), Role::command), 0) << name;
   }
   EXPECT_EQ(fitness_for(column("x_err_mm"), Role::displacement), 0);
+  EXPECT_EQ(fitness_for(column("left_age_s"), Role::time), 0);
   EXPECT_EQ(fitness_for(column("tip_velocity_mm"), Role::displacement), 0);
 }
 

@@ -62,7 +62,7 @@ TEST(RoleSources, MeanOfALengthAndAnAngleIsRefused) {
 
 TEST(RoleSources, UsedColumnWithAmbiguousCommasIsRefused) {
   ForeignTable ambiguous = table();
-  ambiguous.columns[2].ambiguous_comma = "20,000";
+  ambiguous.columns[2].ambiguous_mark = "20,000";
   document::Problems problems;
   static_cast<void>(resolve_sources(ambiguous, mapping("x"), problems));
   EXPECT_NE(
@@ -70,6 +70,13 @@ TEST(RoleSources, UsedColumnWithAmbiguousCommasIsRefused) {
       std::string::npos)
       << problems.format();
   EXPECT_NE(problems.format().find("export the file without thousands separators"), std::string::npos);
+  ambiguous.columns[2].ambiguous_mark = "1.234";
+  document::Problems of_point;
+  static_cast<void>(resolve_sources(ambiguous, mapping("x"), of_point));
+  EXPECT_NE(of_point.format().find("the point in the cell '1.234' of 'x' can be a decimal point or separate "
+                                   "thousands"),
+            std::string::npos)
+      << of_point.format();
   ambiguous.columns[3].unit = "mm";
   document::Problems none;
   static_cast<void>(resolve_sources(ambiguous, mapping("y"), none));

@@ -47,6 +47,32 @@ TEST(ForeignSamples, SegmentsAreReportedInTheTimesOfTheOptions) {
   EXPECT_EQ(again.size(), 80U) << "the reported times select the complete segment";
 }
 
+/// The second gap changes the command by 1.7 % of the range of the file, but by 25 % of the range of the
+/// samples after the first gap.
+TEST(ForeignSamples, KeptSegmentIsSearchedForGapsAgain) {
+  ForeignSamples samples;
+  const auto add = [&](double begin_s, int count, double low_kpa, double range_kpa) {
+    for (int i = 0; i < count; ++i) {
+      samples[Role::time].push_back(begin_s + 0.01 * i);
+      samples[Role::command].push_back(low_kpa + range_kpa * i / (count - 1));
+      samples.row.push_back(samples.row.size());
+    }
+  };
+  add(0, 100, 0, 60);
+  add(5, 200, 10, 2);
+  add(10, 300, 11, 2);
+  ImportRemarks remarks;
+  cut_at_holes(samples, remarks);
+  EXPECT_EQ(samples.size(), 300U);
+  EXPECT_EQ(samples.begin_s, 10);
+  EXPECT_EQ(samples[Role::time].front(), 0);
+  EXPECT_EQ(remarks.account.left_out[static_cast<std::size_t>(LeftOut::hole)], 300U);
+  EXPECT_EQ(remarks.notes, std::vector<std::string>{
+                               "the command changed during 2 gaps, so only the longest segment is kept: "
+                               "10 to 12.99 s; to select another segment, use --from-s and --to-s: 0 to "
+                               "0.99 s, 5 to 6.99 s"});
+}
+
 TEST(ForeignSamples, SamplesWithEqualTimeAreMergedIfNoValueDiffers) {
   const double none = std::nan("");
   ForeignSamples samples;

@@ -36,7 +36,7 @@ TEST(TextTable, SeparatorsAreFound) {
   }
 }
 
-TEST(TextTable, DecimalCommasAreFoundBetweenSemicolonsBlanksAndInQuotes) {
+TEST(TextTable, DecimalMarksAreFoundBetweenSemicolonsBlanksAndInQuotes) {
   for (const char* text : {"a;b\n0,5;1\n1,5;2\n", "a b\n0,5 1\n1,5 2\n", "a,b\n\"0,5\",1\n\"1,5\",2\n"})
     EXPECT_EQ(table_of(text).columns[0].values, (std::vector<double>{0.5, 1.5})) << text;
 }
@@ -238,9 +238,28 @@ TEST(CellValue, ThousandsSeparatorsAreRejected) {
 
 TEST(TextTable, CellsWithAmbiguousCommasAreNamed) {
   const ForeignTable table = table_of("t,x,y\n1,\"20,000\",\"0,5\"\n2,467,3\n");
-  EXPECT_EQ(table.columns[0].ambiguous_comma, "");
-  EXPECT_EQ(table.columns[1].ambiguous_comma, "20,000");
-  EXPECT_EQ(table.columns[2].ambiguous_comma, "");
+  EXPECT_EQ(table.columns[0].ambiguous_mark, "");
+  EXPECT_EQ(table.columns[1].ambiguous_mark, "20,000");
+  EXPECT_EQ(table.columns[2].ambiguous_mark, "");
+}
+
+TEST(TextTable, CommasInTextsAndTimesAreNoDecimalCommas) {
+  const ForeignTable table = table_of(
+      "time;x;note\n2024-05-31 12:00:00,000;0.5;a\n2024-05-31 12:00:00,250;1.5;\"step 1,5\"\n"
+      "2024-05-31 12:00:00,500;2.5;b\n");
+  ASSERT_EQ(table.columns.size(), 3U);
+  EXPECT_EQ(table.format, "text, ';' between columns");
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{0, 0.25, 0.5}));
+  EXPECT_EQ(table.columns[1].values, (std::vector<double>{0.5, 1.5, 2.5}));
+}
+
+TEST(TextTable, ASeparatorWithoutCellsOfTextIsPreferred) {
+  for (const char* separator : {";", " ", "\t"}) {
+    const std::string s = separator;
+    const ForeignTable table = table_of("p" + s + "x\n0,5" + s + "1,25\n1,5" + s + "2,25\n");
+    ASSERT_EQ(table.columns.size(), 2U) << "'" << s << "'";
+    EXPECT_EQ(table.columns[1].values, (std::vector<double>{1.25, 2.25}));
+  }
 }
 
 TEST(TextEncoding, EncodingsAreConvertedToUtf8) {

@@ -73,5 +73,20 @@ TEST_F(UnusedPartsTest, RowsOfSeveralFingersAreAProblem) {
   EXPECT_NE(problems_.format().find("the rows belong to 2 fingers"), std::string::npos) << problems_.format();
 }
 
+TEST_F(UnusedPartsTest, AUnitHasNoEffectIfEachOfTwoTimesStatesItsUnit) {
+  table_.columns[0].unit = "s";
+  table_.columns.push_back(column("t2 (s)", {0, 1, 2}));
+  mapping_[Role::time].columns.emplace_back("t2 (s)");
+  mapping_[Role::time].unit = "ms";
+  sources_.of_roles[static_cast<std::size_t>(Role::time)].columns.push_back(3);
+  report();
+  EXPECT_EQ(remarks_.warnings,
+            std::vector<std::string>{"--unit time=ms has no effect: each time column states its unit"});
+  remarks_.warnings.clear();
+  table_.columns[0].unit = "";
+  report();
+  EXPECT_TRUE(remarks_.warnings.empty()) << remarks_.warnings.front();
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::unused_parts_test

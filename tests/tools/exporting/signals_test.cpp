@@ -27,6 +27,17 @@ TEST(Signals, SignalsWithoutAChannelKeepTheirNames) {
   EXPECT_EQ(all.signals.front().name, "measured_mm");
 }
 
+TEST(Signals, StoredCellsAreWrittenToTheTableUnchanged) {
+  const Signal numbers{"gain", {1.5, std::nan("")}, {"1.50", ""}};
+  const std::vector<SignalGroup> groups{{"", {0, 1}, {numbers}}};
+  EXPECT_FALSE(numbers.is_text());
+  EXPECT_EQ(wide_csv(wide(groups)), "time_s,gain\n0,1.50\n1,\n");
+  EXPECT_NE(mcap_bytes(groups, "test").find("{\"time_s\":0,\"gain\":1.5}"), std::string::npos);
+  const auto mat = mat_bytes(wide(groups));
+  ASSERT_TRUE(mat) << mat.error();
+  EXPECT_TRUE(mat->left_out.empty());
+}
+
 TEST(MatFile, ConvertsNamesToValidMatlabNames) {
   EXPECT_EQ(matlab_name("left displacement.mm"), "left_displacement_mm");
   EXPECT_EQ(matlab_name("2nd_mm"), "x_2nd_mm");

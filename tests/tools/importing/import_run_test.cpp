@@ -31,6 +31,38 @@ TEST(ImportOptions, OptionsOverrideTheExistingMapping) {
   EXPECT_EQ(mapping->missing, std::vector<std::string>{"lost"});
 }
 
+TEST(ImportOptions, AnotherColumnHasNoSettingsOfTheExistingMapping) {
+  sysid::Mapping begun;
+  begun[Role::command] = {{"p"}, "psi", {}, 14.7, false};
+  begun[Role::displacement] = {{"x"}, "", -2.5, {}, true};
+  ImportOptions options;
+  options.columns[static_cast<std::size_t>(Role::command)] = {"p2_kpa"};
+  options.columns[static_cast<std::size_t>(Role::displacement)] = {"x"};
+  const auto mapping = mapping_of(options, begun);
+  ASSERT_TRUE(mapping) << mapping.error();
+  EXPECT_EQ((*mapping)[Role::command], (sysid::ColumnMapping{{"p2_kpa"}, {}, {}, {}, false}));
+  EXPECT_EQ((*mapping)[Role::displacement], begun[Role::displacement]) << "the column is the same";
+}
+
+TEST(ImportOptions, ARateReplacesTheTimeOfTheExistingMapping) {
+  sysid::Mapping begun;
+  begun[Role::time] = {{"t"}, "ms", {}, {}, false};
+  ImportOptions options;
+  options.rate_hz = 50;
+  auto mapping = mapping_of(options, begun);
+  ASSERT_TRUE(mapping) << mapping.error();
+  EXPECT_EQ(mapping->rate_hz, 50);
+  EXPECT_EQ((*mapping)[Role::time], sysid::ColumnMapping{});
+  options.rate_hz.reset();
+  options.columns[static_cast<std::size_t>(Role::time)] = {"t"};
+  mapping = mapping_of(options, *mapping);
+  ASSERT_TRUE(mapping) << mapping.error();
+  EXPECT_FALSE(mapping->rate_hz);
+  EXPECT_EQ((*mapping)[Role::time].columns, std::vector<std::string>{"t"});
+  options.rate_hz = 50;
+  EXPECT_FALSE(mapping_of(options, {})) << "both options are given";
+}
+
 TEST(ImportOptions, CodesOfOneColumnEndWithANumber) {
   sysid::Mapping begun;
   begun.missing_in = {{"p", 999}};
