@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -16,6 +18,9 @@
 
 namespace softgrip::net {
 namespace {
+
+/// First 12 bytes of an IPv4 address that is written as an IPv6 address.
+constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
 tl::unexpected<std::string> failure(const std::string& what) {
   return tl::unexpected{"cannot listen on " + what + ": " + std::strerror(errno)};
@@ -48,6 +53,20 @@ bool is_numeric(const std::string& address) {
   in6_addr bytes{};
   return ::inet_pton(AF_INET, address.c_str(), &bytes) == 1 ||
          ::inet_pton(AF_INET6, address.c_str(), &bytes) == 1;
+}
+
+std::string normal_address(const std::string& address) {
+  std::array<unsigned char, sizeof(in6_addr)> binary{};
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  for (const int family : {AF_INET, AF_INET6}) {
+    if (::inet_pton(family, address.c_str(), binary.data()) != 1) continue;
+    const bool mapped =
+        family == AF_INET6 && std::equal(mapped_prefix.begin(), mapped_prefix.end(), binary.begin());
+    const unsigned char* const bytes = mapped ? binary.data() + mapped_prefix.size() : binary.data();
+    if (::inet_ntop(mapped ? AF_INET : family, bytes, text.data(), text.size()) != nullptr)
+      return text.data();
+  }
+  return address;
 }
 
 bool is_loopback(const std::string& address) {

@@ -24,6 +24,10 @@ struct Listener {
 /// Returns true for a numeric IPv4 or IPv6 address.
 [[nodiscard]] bool is_numeric(const std::string& address);
 
+/// Returns the normal form of a numeric address. All notations of one address have the same normal form, for
+/// example "::1" and "0:0::1", or "10.0.0.5" and "::ffff:10.0.0.5". Any other text is returned unchanged.
+[[nodiscard]] std::string normal_address(const std::string& address);
+
 /// Returns true for the loopback addresses 127.0.0.0/8 and ::1.
 [[nodiscard]] bool is_loopback(const std::string& address);
 

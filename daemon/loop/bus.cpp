@@ -169,6 +169,8 @@ void Bus::exchange() noexcept {
     tell(BusEvent::Kind::connected, BusStatus::ok);
   }
   if (status != BusStatus::ok) {
+    // A board may open a session although a part of it is missing. Only the first exchange then fails.
+    const bool incomplete = session_ == Session::opened && status == BusStatus::disconnected;
     if (loses_session(status)) {
       // If every new connection fails at its first exchange, the daemon must not reconnect in every cycle.
       if (session_ != Session::proven) put_off_next_attempt();
@@ -180,7 +182,7 @@ void Bus::exchange() noexcept {
     // board and the line may be in order. The gap is then the useful message.
     judge_gap(ended, 0);
     note_failure(status);
-    if (another && status == BusStatus::closed_at_once) note_refusal(status);
+    if (another && (incomplete || status == BusStatus::closed_at_once)) note_refusal(status);
     return;
   }
   report_.outputs_kpa = written_kpa_;

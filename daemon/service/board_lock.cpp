@@ -1,6 +1,5 @@
 #include "daemon/service/board_lock.h"
 
-#include <arpa/inet.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -22,6 +21,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
+#include "base/net/listener.h"
 #include "base/periodic_schedule.h"
 #include "base/sha256.h"
 #include "daemon/service/trusted_user.h"
@@ -31,24 +31,6 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// First 12 bytes of an IPv4 address that is written as an IPv6 address.
-constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
-
-/// Returns the normal form of an address. Two notations of one address must have the same normal form, such
-/// as "::1" and "0:0::1", or "::ffff:10.0.0.5" and "10.0.0.5".
-std::string numeric(const std::string& host) {
-  std::array<unsigned char, sizeof(in6_addr)> address{};
-  std::array<char, INET6_ADDRSTRLEN> text{};
-  for (const int family : {AF_INET, AF_INET6}) {
-    if (inet_pton(family, host.c_str(), address.data()) != 1) continue;
-    const bool mapped =
-        family == AF_INET6 && std::equal(mapped_prefix.begin(), mapped_prefix.end(), address.begin());
-    const unsigned char* const bytes = mapped ? address.data() + mapped_prefix.size() : address.data();
-    if (inet_ntop(mapped ? AF_INET : family, bytes, text.data(), text.size()) != nullptr) return text.data();
-  }
-  return host;
-}
-
 std::string real_path(const std::string& path) {
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(path, error);
@@ -57,7 +39,7 @@ std::string real_path(const std::string& path) {
 
 std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   if (const auto* tcp = std::get_if<drivers::TcpAddress>(&link))
-    return fmt::format("modbus {} port {} unit {}", numeric(tcp->host), tcp->port, unit);
+    return fmt::format("modbus {} port {} unit {}", net::normal_address(tcp->host), tcp->port, unit);
   // A serial line has only one client (master), even if it reaches modules with different unit addresses.
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }

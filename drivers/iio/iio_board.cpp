@@ -13,42 +13,16 @@
 #include "base/time.h"
 #include "drivers/board/registers.h"
 #include "drivers/board/round_trip.h"
-#include "drivers/iio/iio_device.h"
+#include "drivers/iio/iio_converter.h"
 
 namespace softgrip::drivers {
 namespace {
 
 constexpr int probes = 5;
-constexpr const char* stays_off_text =
-    "this attribute is still 1 after 0 was written, so the output remains switched off";
-
-/// Returns the name and the bus address of the converter, which must not change while a rig runs. Returns an
-/// empty text if the rig file selects the converter by its label or serial number, because these already
-/// identify the converter.
-std::string identity_behind(const std::string& word, const ComputerDevice& device) {
-  const bool says_which = device.has("label", word) || device.has("serial number", word);
-  return says_which ? std::string{} : identity_of(device);
-}
 
 }  // namespace
 
 struct IioBoard::Parts {
-  /// One wired terminal: the attribute that contains its raw number, and the scaling of this number.
-  struct Converter {
-    std::string name;  // name of the converter in messages
-    std::string path;  // path of the attribute that contains the raw number
-    std::string identity;
-    std::string first_identity;  // identity of the converter in the first session
-    IioAttribute raw;
-    double scale = 1;   // factor from the raw number to V, mA or kPa
-    double offset = 0;  // number that is added to the raw number
-    std::string powerdown_path;
-    IioAttribute powerdown;
-    IioAttribute wake;  // powerdown attribute of the output, open for writing
-    bool is_off = false;
-    bool stays_off = false;  // true: an earlier attempt to switch on the output had no effect
-  };
-
   explicit Parts(const IioSettings& given)
       : settings(given), written(given.outputs), inputs(given.inputs.size()) {
     if (given.heartbeat) written.push_back(given.heartbeat->terminal);
@@ -58,12 +32,15 @@ struct IioBoard::Parts {
   IioSettings settings;
   std::vector<IioTerminal> written;  // terminals that each exchange writes: the outputs, followed by the
                                      // heartbeat
-  std::vector<Converter> inputs;
-  std::vector<Converter> outputs;  // one converter per terminal of `written`
+  std::vector<IioConverter> inputs;
+  std::vector<IioConverter> outputs;  // one converter per terminal of `written`
   bool beats_second = false;
   bool open = false;
   RoundTrip reads;
-  std::array<char, 512> detail{};
+  using Text = std::array<char, 512>;
+  Text detail{};
+  Text missing{};  // the first reason why a terminal cannot be used in this session; empty: all terminals can
+                   // be used
 
   BusStatus say(BusStatus status, const std::string& what, const char* why) noexcept {
     std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
@@ -71,68 +48,41 @@ struct IioBoard::Parts {
   }
   /// Ends the session after an error of the converter. The caller has excluded the written number as the
   /// cause of the error.
-  BusStatus lost(const Converter& converter, int error) noexcept {
+  BusStatus lost(const IioConverter& converter, int error) noexcept {
     open = false;
     return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
   }
 
   using Devices = std::vector<ComputerDevice>;
-  BusStatus attach(const Devices& there, const IioTerminal& terminal, bool output, Converter& converter);
-  BusStatus attach_each(const Devices& there, const std::vector<IioTerminal>& terminals, bool output,
-                        std::vector<Converter>& converters);
-  BusStatus attach_all();
-  BusStatus open_number(const std::filesystem::path& folder, const std::string& channel, bool output,
-                        Converter& converter);
+  void miss(const std::string& why) noexcept;
+  [[nodiscard]] bool complete() const noexcept { return missing[0] == 0; }
+  BusStatus report_missing() noexcept;
+  void attach_each(const Devices& there, const std::vector<IioTerminal>& terminals, bool output,
+                   std::vector<IioConverter>& converters);
+  void attach_all();
   [[nodiscard]] bool uses(std::size_t output) const;
-  BusStatus look_at_powerdown(const std::string& channel, Converter& converter);
-  BusStatus write_raw(const Converter& converter, long raw) noexcept;
-  BusStatus switch_on(Converter& converter) noexcept;
+  [[nodiscard]] bool has_output() const;
+  BusStatus write_raw(const IioConverter& converter, long raw) noexcept;
+  BusStatus switch_on(IioConverter& converter) noexcept;
   BusStatus switch_all_on() noexcept;
   BusStatus beat() noexcept;
-  BusStatus probe(Nanoseconds deadline) noexcept;
+  void probe(Nanoseconds deadline) noexcept;
   BusStatus write(std::size_t channel, double command_kpa) noexcept;
+  BusStatus write_all(std::span<const double> commands_kpa) noexcept;
   BusStatus read(const InputWiring& wiring, JudgedInput& input) noexcept;
   BusStatus read_channel(std::size_t channel, Reading& reading) noexcept;
 };
 
-BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& terminal, bool output,
-                                  Converter& converter) {
-  converter.name = terminal.device + " " + terminal.channel;
-  const auto device = only_device(there, terminal.device, "converter");
-  if (!device) {
-    return say(BusStatus::disconnected, device.error().message,
-               (device.error().hint + ", under " + settings.root).c_str());
-  }
-  converter.identity = identity_behind(terminal.device, *device);
-  if (!converter.first_identity.empty() && converter.identity != converter.first_identity) {
-    return say(BusStatus::disconnected, converter.name,
-               ("it was " + converter.first_identity + ", but now it is " + converter.identity +
-                ": restart softgripd if this change is intended")
-                   .c_str());
-  }
-  const std::filesystem::path folder = std::filesystem::path(settings.root) / device->node;
-  return open_number(folder, terminal.channel, output, converter);
+/// Records the reason why a terminal cannot be used in this session.
+void IioBoard::Parts::miss(const std::string& why) noexcept {
+  if (complete()) std::snprintf(missing.data(), missing.size(), "%s", why.c_str());
 }
 
-/// Opens the attribute that contains the raw number of a channel, and reads the scaling of this number.
-BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, const std::string& channel,
-                                       bool output, Converter& converter) {
-  const std::string stem = (output ? "out_" : "in_") + channel;
-  converter.path = (folder / (stem + "_raw")).string();
-  int error = converter.raw.open(converter.path, output);
-  // Some drivers have no raw number; their number is already in mV, mA or kPa.
-  const bool processed =
-      error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
-  if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
-  const IioScaling scaling = processed ? scaling_of_processed(channel) : scaling_of(folder, channel, output);
-  converter.scale = scaling.scale;
-  converter.offset = scaling.offset;
-  if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
-      !std::isfinite(converter.offset)) {
-    return say(BusStatus::disconnected, converter.name,
-               "the converter has no valid attribute `scale`, so its raw values cannot be converted");
-  }
-  return BusStatus::ok;
+/// Ends a session in which a terminal cannot be used.
+BusStatus IioBoard::Parts::report_missing() noexcept {
+  open = false;
+  detail = missing;
+  return BusStatus::disconnected;
 }
 
 /// Returns true if a channel is wired to the output. An output without a channel is not changed.
@@ -142,88 +92,82 @@ bool IioBoard::Parts::uses(std::size_t output) const {
                      [&](const ChannelWiring& channel) { return channel.valve.output == output; });
 }
 
-BusStatus IioBoard::Parts::look_at_powerdown(const std::string& channel, Converter& converter) {
-  const std::filesystem::path folder = std::filesystem::path(converter.path).parent_path();
-  converter.is_off = false;
-  const std::string name = powerdown_of(folder, channel);
-  if (name.empty()) return BusStatus::ok;
-  const std::string path = (folder / name).string();
-  converter.powerdown_path = path;
-  const int error = converter.powerdown.open(path, false);
-  const auto state = error == 0 ? converter.powerdown.read() : std::nullopt;
-  if (!state) return say(BusStatus::disconnected, path, error != 0 ? text_of_errno(error) : "no number");
-  converter.is_off = *state != 0;
-  converter.stays_off = converter.stays_off && converter.is_off;
-  if (converter.stays_off) return say(BusStatus::disconnected, path, stays_off_text);
-  const int denied = converter.is_off ? converter.wake.open(path, true) : 0;
-  if (denied == 0) return BusStatus::ok;
-  return say(BusStatus::disconnected, path + " is 1 and cannot be cleared", text_of_errno(denied));
+/// Returns true if at least one output of a channel can be written.
+bool IioBoard::Parts::has_output() const {
+  for (std::size_t i = 0; i < settings.outputs.size(); ++i) {
+    if (uses(i) && outputs[i].raw.is_open()) return true;
+  }
+  return false;
 }
 
-BusStatus IioBoard::Parts::attach_each(const Devices& there, const std::vector<IioTerminal>& terminals,
-                                       bool output, std::vector<Converter>& converters) {
+void IioBoard::Parts::attach_each(const Devices& there, const std::vector<IioTerminal>& terminals,
+                                  bool output, std::vector<IioConverter>& converters) {
   for (std::size_t i = 0; i < converters.size(); ++i) {
-    const BusStatus status = attach(there, terminals[i], output, converters[i]);
-    if (status != BusStatus::ok) return status;
-    for (std::size_t j = 0; j < i; ++j) {
-      if (converters[j].path != converters[i].path) continue;
-      return say(BusStatus::disconnected, converters[j].name + " and " + converters[i].name,
-                 ("both are " + converters[i].path).c_str());
+    IioConverter& converter = converters[i];
+    std::string why = converter.attach(there, settings.root, terminals[i], output);
+    for (std::size_t j = 0; why.empty() && j < i; ++j) {
+      if (!converters[j].raw.is_open() || converters[j].path != converter.path) continue;
+      why = converters[j].name + " and " + converter.name + ": both are " + converter.path;
     }
+    if (why.empty()) continue;
+    converter.raw.close();
+    miss(why);
   }
-  return BusStatus::ok;
 }
 
-BusStatus IioBoard::Parts::attach_all() {
+/// Opens all terminals that exist. A terminal that cannot be used must not prevent the writes to the other
+/// outputs.
+void IioBoard::Parts::attach_all() {
+  missing[0] = 0;
   const Devices there = converters_in(settings.root);
-  BusStatus status = attach_each(there, written, true, outputs);
-  for (std::size_t i = 0; status == BusStatus::ok && i < outputs.size(); ++i) {
-    if (uses(i)) status = look_at_powerdown(written[i].channel, outputs[i]);
+  attach_each(there, written, true, outputs);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (!uses(i) || !outputs[i].raw.is_open()) continue;
+    if (const std::string why = outputs[i].look_at_powerdown(written[i].channel); !why.empty()) miss(why);
   }
-  if (status == BusStatus::ok) status = attach_each(there, settings.inputs, false, inputs);
-  if (status != BusStatus::ok) return status;
+  attach_each(there, settings.inputs, false, inputs);
+  if (!complete()) return;
   for (auto* const converters : {&outputs, &inputs}) {
-    for (Converter& converter : *converters) converter.first_identity = converter.identity;
+    for (IioConverter& converter : *converters) converter.first_identity = converter.identity;
   }
-  return status;
 }
 
 /// Reads each input several times to measure the duration of a read, which budget() needs.
-BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
+void IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   reads.reset();
   for (int i = 0; i < probes; ++i) {
-    for (const Converter& converter : inputs) {
+    for (const IioConverter& converter : inputs) {
       const Nanoseconds before = monotonic_now();
-      if (i > 0 && before > deadline) return BusStatus::ok;
-      if (!converter.raw.read().has_value()) return lost(converter, errno);
+      if (i > 0 && before > deadline) return;
+      if (!converter.raw.read().has_value()) {
+        lost(converter, errno);
+        missing = detail;
+        return;
+      }
       reads.add(monotonic_now() - before);
     }
   }
-  return BusStatus::ok;
 }
 
-BusStatus IioBoard::Parts::switch_on(Converter& converter) noexcept {
-  const int error = converter.wake.write(0);
-  const std::optional<double> state = converter.powerdown.read();
-  converter.is_off = error != 0 || !state || *state != 0;
-  converter.stays_off = converter.is_off;
+BusStatus IioBoard::Parts::switch_on(IioConverter& converter) noexcept {
+  const int error = converter.switch_on();
   if (!converter.is_off) return BusStatus::ok;
   open = false;
   return say(BusStatus::disconnected, converter.powerdown_path,
-             error != 0 ? text_of_errno(error) : stays_off_text);
+             error != 0 ? text_of_errno(error) : IioConverter::stays_off_text);
 }
 
 /// Switches on all outputs that are off. The caller must have written the numbers of all outputs, because
 /// several outputs may share one powerdown attribute.
 BusStatus IioBoard::Parts::switch_all_on() noexcept {
-  for (Converter& converter : outputs) {
+  for (IioConverter& converter : outputs) {
     if (!converter.is_off) continue;
     if (const BusStatus status = switch_on(converter); status != BusStatus::ok) return status;
   }
   return BusStatus::ok;
 }
 
-BusStatus IioBoard::Parts::write_raw(const Converter& converter, long raw) noexcept {
+BusStatus IioBoard::Parts::write_raw(const IioConverter& converter, long raw) noexcept {
   const int error = converter.raw.write(raw);
   if (error == EINVAL || error == ERANGE) {
     return say(BusStatus::write_refused, converter.name, text_of_errno(error));
@@ -240,7 +184,8 @@ BusStatus IioBoard::Parts::beat() noexcept {
 
 BusStatus IioBoard::Parts::write(std::size_t channel, double command_kpa) noexcept {
   const OutputWiring& valve = settings.wiring[channel].valve;
-  const Converter& converter = outputs[valve.output];
+  const IioConverter& converter = outputs[valve.output];
+  if (!converter.raw.is_open()) return report_missing();
   const double raw = std::round(valve.scaling.x_at(command_kpa) / converter.scale - converter.offset);
   const double taken = std::clamp(raw, 0.0, static_cast<double>(settings.outputs[valve.output].raw_max));
   const BusStatus status = write_raw(converter, static_cast<long>(taken));
@@ -252,8 +197,23 @@ BusStatus IioBoard::Parts::write(std::size_t channel, double command_kpa) noexce
   return BusStatus::write_refused;
 }
 
+/// Writes the commands of all channels, even if some of the writes fail. Returns the status of the first
+/// failure. A lost output has priority over a refused write.
+BusStatus IioBoard::Parts::write_all(std::span<const double> commands_kpa) noexcept {
+  BusStatus result = BusStatus::ok;
+  Text text{};
+  for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
+    const BusStatus status = write(i, commands_kpa[i]);
+    if (status == BusStatus::ok || result == status || result == BusStatus::disconnected) continue;
+    result = status;
+    text = detail;
+  }
+  if (result != BusStatus::ok) detail = text;
+  return result;
+}
+
 BusStatus IioBoard::Parts::read(const InputWiring& wiring, JudgedInput& input) noexcept {
-  const Converter& converter = inputs[wiring.input];
+  const IioConverter& converter = inputs[wiring.input];
   const std::optional<double> raw = converter.raw.read();
   if (!raw.has_value()) return lost(converter, errno);
   input = judge(wiring, (*raw + converter.offset) * converter.scale);
@@ -298,13 +258,14 @@ BusStatus IioBoard::connect(std::chrono::nanoseconds deadline) noexcept {
   parts.open = false;
   const Nanoseconds until = monotonic_now() + deadline.count();
   try {
-    if (const BusStatus status = parts.attach_all(); status != BusStatus::ok) return status;
+    parts.attach_all();
   } catch (const std::exception& error) {
     return parts.say(BusStatus::disconnected, "looking for converters", error.what());
   }
-  const BusStatus status = parts.reads.count() == 0 ? parts.probe(until) : BusStatus::ok;
-  parts.open = status == BusStatus::ok;
-  return status;
+  if (!parts.has_output()) return parts.report_missing();
+  if (parts.complete() && parts.reads.count() == 0) parts.probe(until);
+  parts.open = true;
+  return BusStatus::ok;
 }
 
 BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
@@ -322,12 +283,9 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
     std::snprintf(parts.detail.data(), parts.detail.size(), "a command that is not a number was not written");
     return BusStatus::write_refused;
   }
-  BusStatus written = BusStatus::ok;
-  for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
-    const BusStatus status = parts.write(i, commands_kpa[i]);
-    if (status == BusStatus::disconnected) return status;
-    if (status != BusStatus::ok) written = status;
-  }
+  BusStatus written = parts.write_all(commands_kpa);
+  if (written == BusStatus::disconnected) return written;
+  if (!parts.complete()) return parts.report_missing();
   if (const BusStatus status = parts.beat(); status != BusStatus::ok) return status;
   if (written == BusStatus::ok) written = parts.switch_all_on();
   if (written == BusStatus::disconnected) return written;

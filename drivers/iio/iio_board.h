@@ -20,14 +20,21 @@ namespace softgrip::drivers {
 /// after the reads of each channel. The only possible watchdog is an external circuit that monitors a
 /// heartbeat output. Without this circuit, the outputs keep their last value when the daemon stops.
 ///
-/// If the `powerdown` attribute of an output is 1, the first exchange writes the number and then switches the
-/// output on. In the opposite order, the output would have an old value for a short time. connect() fails if
-/// the process may not switch the output on, or if an earlier attempt to switch it on had no effect.
+/// A terminal that cannot be used must not prevent the writes to the other outputs, because these outputs may
+/// be under pressure. Therefore, connect() succeeds if at least one output of a channel can be written. If a
+/// terminal cannot be used, the first exchange writes the commands to all other outputs and returns
+/// `disconnected`, and detail() contains the reason. The heartbeat does not change in this exchange. If the
+/// write to an output fails, the exchange still writes the other outputs.
 ///
-/// connect() fails if the word for a converter does not match exactly one converter, or if two terminals are
-/// the same channel. In later sessions, each word must match the converter of the first session. Otherwise,
-/// another converter with the same name could receive the commands. A word that is a label or a serial number
-/// is not checked in later sessions.
+/// If the `powerdown` attribute of an output is 1, the first exchange writes the number and then switches the
+/// output on. In the opposite order, the output would have an old value for a short time. The terminal cannot
+/// be used if the process may not switch the output on, or if an earlier attempt to switch it on had no
+/// effect. While a terminal cannot be used, no output is switched on.
+///
+/// A terminal also cannot be used if the word for its converter does not match exactly one converter, or if
+/// it is the same channel as another terminal. In later sessions, each word must match the converter of the
+/// first complete session. Otherwise, another converter with the same name could receive the commands. A word
+/// that is a label or a serial number is not checked in later sessions.
 class IioBoard final : public Board {
  public:
   explicit IioBoard(const IioSettings& settings);

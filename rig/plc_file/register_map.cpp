@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -51,7 +52,9 @@ double resolution_of(const std::string& text, std::string_view unit) {
   double value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view rest(read.ptr, static_cast<std::size_t>(text.data() + text.size() - read.ptr));
-  return read.ec == std::errc{} && rest == fmt::format(" {}", unit) && value > 0 ? value : 0;
+  return read.ec == std::errc{} && rest == fmt::format(" {}", unit) && value > 0 && std::isfinite(value)
+             ? value
+             : 0;
 }
 
 class Reader {

@@ -78,10 +78,18 @@ class SettingsReader {
     if (reader.good("address") && !net::is_numeric(settings_.address))
       reader.report("address", "this is not a numeric address", std::string(numeric_hint));
     for (const Node* const item : reader.sequence("allow", true)) {
-      settings_.allow.push_back(item->scalar);
+      const std::string address = net::normal_address(item->scalar);
+      const auto known = std::find(settings_.allow.begin(), settings_.allow.end(), address);
+      if (known == settings_.allow.end()) settings_.allow.push_back(address);
       if (item->kind != Node::Kind::scalar || !net::is_numeric(item->scalar))
         problems_.add(
             document_.problem(item->at, "this is not a numeric address", std::string(numeric_hint)));
+    }
+    if (settings_.max_masters < settings_.allow.size()) {
+      reader.report(reader.has("max_masters") ? "max_masters" : "allow",
+                    fmt::format("{} addresses may connect, but `max_masters` is {}", settings_.allow.size(),
+                                settings_.max_masters),
+                    fmt::format("max_masters: {}", settings_.allow.size()));
     }
     if (reader.good("address") && !net::is_loopback(settings_.address) && settings_.allow.empty()) {
       reader.report("allow", "other machines can reach this address, so the permitted clients must be listed",

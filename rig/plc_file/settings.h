@@ -42,7 +42,7 @@ struct Settings {
   std::string socket;
   std::string address;
   std::uint16_t port = 502;
-  std::vector<std::string> allow;
+  std::vector<std::string> allow;  ///< normal forms of the addresses, each once; see net::normal_address()
   std::size_t max_masters = 4;
   double idle_s = 60;
   double silence_s = 2;

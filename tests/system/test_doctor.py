@@ -7,8 +7,10 @@ import re
 import resource
 import signal
 import subprocess
+import unittest
 
 import bench
+import digital_lines
 
 
 class Doctor(bench.BenchTest):
@@ -188,11 +190,11 @@ class Calibrate(bench.BenchTest):
                                         (r"displacement_margin_mm: 2", "displacement_margin_mm: 40"),
                                         (r"at_v: \[0, 10\], is_kpa: \[0, 100\], range", "at_v: [0, 10], is_kpa: [0, 80], range")])
 
-    def start(self, rig, *arguments):
+    def start(self, rig, *arguments, environment=None):
         child = subprocess.Popen([str(a) for a in (bench.SOFTGRIP, "calibrate", "--rig", rig, "--channel", "left",
                                                    "--date", "2026-11-20", *arguments)],
                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                 cwd=self.folder)
+                                 cwd=self.folder, env={**os.environ, **(environment or {})})
         self.addCleanup(self.clean_up, child)
         return child
 
@@ -273,6 +275,34 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
     QUICK = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.5", "--average-s", "0.3")
+
+    @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
+    def test_an_emergency_stop_ends_the_calibration_at_the_rest_pressures(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        rig.write_text(rig.read_text() + digital_lines.SECTION)
+        child = self.start(rig, "--valve", "--move", environment=digital_lines.environment(self.folder))
+        bench.wait_for("the motion", lambda: max(emulator.commands_kpa()) > 5)
+        lines = digital_lines.Lines(self.folder)
+        self.addCleanup(lines.wire.close)
+        self.assertIn("ENABLE", lines.on())
+        lines.press()
+        _, said = child.communicate(timeout=bench.PATIENCE_S)
+        self.assertEqual(child.returncode, 6, said)
+        self.assertIn(b"the emergency stop is pressed", said)
+        self.assertEqual(emulator.commands_kpa(), [0, 0])
+
+    def test_a_calibration_by_hand_does_not_drop_a_held_part_without_a_confirmation(self):
+        rig = self.folder / "config/rig.yaml"
+        text, count = re.subn(r"watchdog_timeout_s: \S+", "watchdog_timeout_s: 0", rig.read_text())
+        self.assertEqual(count, 1)
+        words = "the outputs keep their last pressure when softgripd dies"
+        rig.write_text(text.replace("safety:\n", f'safety:\n  accept_no_watchdog: "{words}"\n'))
+        by_hand = ("--channel", "left", "--sensor", "--average-s", "0.1", "--gauge-mm", "1", "20")
+        refused = self.softgrip("calibrate", "--rig", rig, *by_hand, expect=5)
+        self.assertIn("the fingers may still hold a part", refused.stderr)
+        confirmed = self.softgrip("calibrate", "--rig", rig, *by_hand, "--yes", expect=6)
+        self.assertIn("the signal changes too little", confirmed.stderr)
 
     def test_the_result_is_written_into_the_rig_file(self):
         emulator = self.emulator()

@@ -283,6 +283,14 @@ class Gateway(bench.BenchTest):
             client.settimeout(bench.PATIENCE_S)
             self.assertEqual(client.recv(1), b"")
 
+    def test_a_refused_address_is_printed_once(self):
+        gateway = self.gateway(changes=((r"allow: \[127.0.0.1\]", "allow: [127.0.0.2]"),))
+        for _ in range(2):
+            with socket.create_connection(("127.0.0.1", gateway.port)) as client:
+                client.settimeout(bench.PATIENCE_S)
+                self.assertEqual(client.recv(1), b"")
+        self.assertEqual(gateway.errors().count("refused a connection from 127.0.0.1"), 1, gateway.errors())
+
     def test_malformed_bytes_close_only_their_own_connection(self):
         gateway = self.gateway()
         master = self.master(gateway)

@@ -19,8 +19,17 @@ namespace {
 
 using Failure = tl::unexpected<NotCommissioned>;
 
-/// Highest pressure of the first, gentle motion, as a share of the largest pressure of the channel.
+/// Highest pressure of the first, gentle motion, as a share of the largest pressure of the channel. If the
+/// model predicts too small a motion, the share is raised in steps, up to 1.
 constexpr double gentle_share = 0.3;
+constexpr double share_step = 0.1;
+/// Smallest measured displacement that counts as a motion, as a multiple of the noise of a reading. The
+/// difference between the largest and the first of several thousand readings at rest is smaller.
+constexpr double noises = 10;
+/// Smallest displacement that the model must predict for the gentle motion, as a multiple of the smallest
+/// displacement that counts as a motion, and as a share of displacement_max_mm.
+constexpr double motions = 2;
+constexpr double least_share_of_range = 0.01;
 /// Smallest measured displacement that counts as a motion, as a share of the displacement that the model
 /// predicts.
 constexpr double least_motion = 0.1;
@@ -43,9 +52,8 @@ sysid::Waveform slow(const char* name, const char* about, double share, int coun
   return waveform;
 }
 
-sysid::Waveform gentle(const sysid::RigLimits& limits) {
-  return slow("gentle_motion", "gentle motion that measures the range of the finger", gentle_share, 1,
-              limits);
+sysid::Waveform gentle(const sysid::RigLimits& limits, double share) {
+  return slow("gentle_motion", "gentle motion that measures the range of the finger", share, 1, limits);
 }
 
 /// Returns the motion that precedes the first run. It is needed because the first motion to a displacement,
@@ -94,6 +102,18 @@ double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   return reach_of(log).motion_mm;
 }
 
+/// Returns the standard deviation of the valid readings before the pressure rises [mm].
+double noise_at_rest_mm(const sysid::Log& log) {
+  std::vector<double> readings;
+  for (std::size_t i = 0; i < log.size() && log.pressure_command_kpa[i] <= 0; ++i) {
+    if (std::isfinite(log.displacement_mm[i])) readings.push_back(log.displacement_mm[i]);
+  }
+  double mean = 0, squares = 0;
+  for (const double reading : readings) mean += reading / static_cast<double>(readings.size());
+  for (const double reading : readings) squares += (reading - mean) * (reading - mean);
+  return readings.size() > 1 ? std::sqrt(squares / static_cast<double>(readings.size() - 1)) : 0;
+}
+
 /// Returns limits of the rig for the experiments. Up to the largest pressure of these limits, the finger uses
 /// at most `range_share` of its displacement range.
 /// @param ratio    measured displacement divided by the displacement that the model predicts.
@@ -120,6 +140,7 @@ class Commissioning {
 
   tl::expected<CommissioningRuns, NotCommissioned> run() {
     runs_.limits = limits_for(rig_, options_.experiments, 1, 0);
+    if (const auto chosen = choose_gentle(); !chosen) return Failure(chosen.error());
     if (!rig_.simulated && options_.consent && !options_.consent(what_moves()))
       return fails(ExitCode::failed, "softgrip was not allowed to move the rig");
     signals_.emplace();
@@ -141,7 +162,7 @@ class Commissioning {
   }
 
   [[nodiscard]] std::string what_moves() const {
-    double length_s = gentle(runs_.limits).duration_s() + first_load(runs_.limits).duration_s() + 2 * pause_s;
+    double length_s = gentle_.duration_s() + first_load(runs_.limits).duration_s() + 2 * pause_s;
     const auto waveforms = chosen(options_.experiments, runs_.limits);
     for (const sysid::Waveform& waveform : waveforms)
       length_s += 2 * (options_.rest_s + waveform.duration_s() + pause_s);
@@ -159,18 +180,36 @@ class Commissioning {
            "--move)";
   }
 
+  /// Chooses the pressure of the gentle motion such that the model predicts a clear motion. Fails if the
+  /// model predicts no clear motion for the largest pressure.
+  tl::expected<void, NotCommissioned> choose_gentle() {
+    const control::ChannelSettings& channel = rig_.rig.settings.channels[rig_.channel];
+    const double least_mm = std::max(motions * noises * channel.health.noise_mm,
+                                     least_share_of_range * channel.limits.displacement_max_mm);
+    for (double share = gentle_share;; share = std::min(1.0, share + share_step)) {
+      gentle_ = gentle(runs_.limits, share);
+      gentle_mm_ = expected_mm(rig_, gentle_);
+      if (gentle_mm_ >= least_mm) return {};
+      if (share >= 1) break;
+    }
+    return fails(ExitCode::not_acceptable,
+                 "the model of the rig file predicts a motion of " + significant(gentle_mm_, 2) + " mm at " +
+                     significant(runs_.limits.pressure_max_kpa, 3) + " kPa, but at least " +
+                     significant(least_mm, 2) +
+                     " mm are necessary. Check the model, pressure_max_kpa and the noise of the sensor");
+  }
+
   /// Plays the gentle motion, and computes the limits of the experiments from the displacement during this
   /// motion.
   tl::expected<void, NotCommissioned> begin(const std::string& folder) {
-    const sysid::Waveform waveform = gentle(runs_.limits);
-    const auto log = play(waveform, folder);
+    const auto log = play(gentle_, folder);
     if (!log) return Failure(log.error());
     const Reach reach = reach_of(*log);
-    const double expected = expected_mm(rig_, waveform);
-    if (!(reach.motion_mm > least_motion * expected))
-      return fails(ExitCode::not_acceptable, no_motion(reach.motion_mm, expected));
+    const double least_mm = std::max(least_motion * gentle_mm_, noises * noise_at_rest_mm(*log));
+    if (!(reach.motion_mm > least_mm))
+      return fails(ExitCode::not_acceptable, no_motion(reach.motion_mm, gentle_mm_));
     if (auto free = check_free(*log); !free) return free;
-    runs_.limits = limits_for(rig_, options_.experiments, std::max(1.0, reach.motion_mm / expected),
+    runs_.limits = limits_for(rig_, options_.experiments, std::max(1.0, reach.motion_mm / gentle_mm_),
                               std::max(0.0, reach.rest_mm));
     const auto loaded = play(first_load(runs_.limits), folder);
     if (!loaded) return Failure(loaded.error());
@@ -230,6 +269,8 @@ class Commissioning {
   // until the recordings are removed, so that the signal does not end the process between two motions.
   std::optional<daemon::Signals> signals_;
   CommissioningRuns runs_;
+  sysid::Waveform gentle_;  // the first, gentle motion
+  double gentle_mm_ = 0;    // displacement that the model predicts for the gentle motion [mm]
   std::uint64_t motions_ = 0;
 };
 

@@ -43,15 +43,16 @@ struct NotCommissioned {
 };
 
 /// Plays the commissioning experiments twice. First, a gentle motion checks that the finger moves, and its
-/// displacement is compared with the prediction of the rig file's model. The largest pressure of the
+/// displacement is compared with the prediction of the rig file's model. The pressure of the gentle motion is
+/// so large that the model predicts a motion well above the noise of the sensor. The largest pressure of the
 /// experiments is the smaller of two values: the channel's limit, and the pressure at which the finger is
 /// expected to use 90 % of the distance from rest to displacement_max_mm. Before the first run, the finger is
 /// loaded twice to this pressure, so that both runs begin in equal conditions.
 ///
 /// Every log is checked against the rig file's model of the channel. Returns ExitCode::not_acceptable if the
-/// finger hardly moves or touches an object, if the rig does not play the requested experiment, or if it has
-/// a fault. Returns ExitCode::failed if consent is refused or the user presses Ctrl-C. Signals are held back
-/// during the runs.
+/// model predicts no clear motion, if the finger hardly moves or touches an object, if the rig does not play
+/// the requested experiment, or if it has a fault. Returns ExitCode::failed if consent is refused or the user
+/// presses Ctrl-C. Signals are held back during the runs.
 [[nodiscard]] tl::expected<CommissioningRuns, NotCommissioned> play_commissioning(
     const ExperimentRig& rig, const CommissioningOptions& options);
 

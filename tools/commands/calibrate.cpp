@@ -1,5 +1,7 @@
 // softgrip calibrate: calibrates sensor and valve at two points against a gauge and a manometer.
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
@@ -16,9 +18,11 @@
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/calibration_results.h"
+#include "tools/commissioning/motion_safety.h"
 #include "tools/commissioning/procedure.h"
 
 namespace softgrip::tools {
@@ -89,10 +93,18 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
   return all;
 }
 
-/// Returns an exit code if a daemon uses the board of the rig, else nullopt.
-std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, const rig::RigFile& rig) {
-  if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
-  return fail(ExitCode::state_refused, stop_the_daemon);
+/// Returns an exit code if a daemon uses the board of the rig, or if the user does not allow that a held part
+/// drops. Otherwise returns nullopt.
+std::optional<ExitCode> refuse_state(const CalibrateOptions& options, const rig::RigFile& rig) {
+  if (daemon_runs(options.socket.empty() ? rig.socket.path : options.socket))
+    return fail(ExitCode::state_refused, stop_the_daemon);
+  if (options.move || options.yes || !may_hold_a_part(rig)) return std::nullopt;
+  if (::isatty(STDIN_FILENO) == 1 &&
+      confirmed("the calibration writes the rest pressures to all fingers, so a held part drops. Continue?"))
+    return std::nullopt;
+  return fail(ExitCode::state_refused,
+              "the board was not used, because the calibration also writes the rest pressures, and the "
+              "fingers may still hold a part: remove the part, then repeat the command with --yes");
 }
 
 calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const CalibrateOptions& options,
@@ -240,14 +252,14 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
 /// Connects to the rig, measures, sets the channels to their rest pressures and writes the results.
 ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                    const calibrate::Settings& settings) {
-  const auto manual = ManualRig::open(rig);
+  const auto manual = ManualRig::open(rig, options.move);
   if (!manual) return fail(manual.error().code, manual.error().text);
   MotionSession& session = (*manual)->session();
   std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", (*manual)->board().describe().c_str(),
                rig.settings.channels[settings.channel].name.c_str());
   calibrate::TerminalOperator terminal;
   const auto results = measure(rig, options, settings, session, terminal);
-  const bool safe = session.leave();
+  const bool safe = session.leave(tell_silence);
   if (!safe)
     std::fprintf(stderr,
                  "the board did NOT confirm the rest pressures: check the pressures before you reach into "
@@ -270,7 +282,7 @@ ExitCode run(const CalibrateOptions& chosen) {
   if (!rig) return rig.error();
   const auto settings = prepare(options, *rig);
   if (!settings) return settings.error();
-  if (const auto code = refuse_beside_daemon(options, *rig)) return *code;
+  if (const auto code = refuse_state(options, *rig)) return *code;
   return carry_out(*rig, options, *settings);
 }
 
@@ -337,12 +349,16 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->add_flag(
       "--write", options->write,
       "Write the calibration points into the rig file, and keep the previous file next to the new file");
-  command->add_flag("--yes", options->yes, "Write doubtful results without a confirmation question");
+  command->add_flag(
+      "--yes", options->yes,
+      "Ask no confirmation questions: write doubtful results, and vent all fingers although they may hold "
+      "a part");
   command->footer(
       "Questions go to the standard error. Answers are read line by line from the standard input.\nExit "
-      "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs,\n6 no "
-      "calibration can be computed from the measurements, a required sensor gave no valid readings, or "
-      "doubtful results were not written.");
+      "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs, or the "
+      "fingers may hold a part,\n6 no calibration can be computed from the measurements, a required sensor "
+      "gave no valid readings, a pressure left its limits, the emergency stop is pressed, or doubtful "
+      "results were not written.");
 }
 
 }  // namespace softgrip::tools

@@ -85,10 +85,10 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   const MonotonicClock clock;
   auto board = daemon::make_board(rig, clock);
   doctor::examine_description(rig, *board, findings);
-  doctor::examine_gpio(rig, findings);
+  const auto lines = doctor::examine_gpio(rig, findings);
   daemon::Signals signals;
   doctor::examine_rig(
-      rig, *board, clock, [&signals] { return signals.first() != 0; }, move, {}, findings);
+      rig, *board, clock, [&signals] { return signals.first() != 0; }, move, {}, findings, lines.get());
   if (signals.first() != 0 || !doctor::wants_bus_examination(findings)) return;
   board.reset();
   doctor::examine_bus(rig, findings);

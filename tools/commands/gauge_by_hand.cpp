@@ -17,7 +17,7 @@ std::string what_is_done(const ExperimentRig& rig, std::size_t readings) {
   return "The sensor of channel '" + rig.channel_name() + "' of " + rig.rig.name +
          " is checked against a gauge: you hold the target of the sensor at " + std::to_string(readings) +
          " positions, " + significant(sysid::minutes_for(readings), 2) +
-         " minutes. The finger is vented and does not move";
+         " minutes. All fingers of the rig are vented, so a held part drops. No finger moves";
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!consent(what_is_done(rig, positions_mm.size())))
       return tl::unexpected(NotPlayed{true, "softgrip was not allowed to check the sensor"});
     if (daemon_runs(rig.rig.socket.path)) return failed(stop_the_daemon);
-    const auto manual = ManualRig::open(rig.rig);
+    const auto manual = ManualRig::open(rig.rig, false);
     if (!manual) return failed(manual.error().text);
     MotionSession& session = (*manual)->session();
     calibrate::TerminalOperator terminal;
@@ -39,7 +39,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     calibrate::Settings settings;
     settings.channel = rig.channel;
     const auto visits = calibrate::read_positions(session, terminal, settings, positions_mm);
-    const bool safe = session.leave();
+    const bool safe = session.leave(tell_silence);
     if (!visits)
       return tl::unexpected(
           NotPlayed{visits.error().code == ExitCode::failed, visits.error().text, visits.error().code});

@@ -20,18 +20,39 @@ tl::expected<rig::RigFile, ExitCode> read_rig(const std::string& path) {
   });
 }
 
-ManualRig::ManualRig(const rig::RigFile& rig, daemon::BoardLock lock)
+ManualRig::ManualRig(const rig::RigFile& rig, daemon::BoardLock lock,
+                     std::unique_ptr<drivers::GpioLines> lines)
     : lock_(std::move(lock)),
       board_(daemon::make_board(rig, clock_)),
-      session_(rig, *board_, clock_, [this] { return stopped(); }) {}
+      lines_(std::move(lines)),
+      session_(
+          rig, *board_, clock_, [this] { return stopped(); }, lines_.get()) {}
 
-calibrate::Expected<std::unique_ptr<ManualRig>> ManualRig::open(const rig::RigFile& rig) {
+calibrate::Expected<std::unique_ptr<ManualRig>> ManualRig::open(const rig::RigFile& rig, bool move) {
   auto lock = daemon::BoardLock::take(rig);
   if (!lock) return tl::unexpected(calibrate::Refusal{ExitCode::state_refused, lock.error()});
-  std::unique_ptr<ManualRig> manual(new ManualRig(rig, std::move(*lock)));
+  std::unique_ptr<drivers::GpioLines> lines;
+  if (move && rig.gpio) {
+    auto opened = drivers::open_gpio_lines(rig.gpio->lines);
+    if (!opened) {
+      const document::Problem& place = rig.gpio->places[opened.error().line];
+      return tl::unexpected(calibrate::Refusal{
+          ExitCode::io, place.file + ":" + std::to_string(place.at.line) + ":" +
+                            std::to_string(place.at.column) + ": " + opened.error().message});
+    }
+    lines = std::move(*opened);
+  }
+  std::unique_ptr<ManualRig> manual(new ManualRig(rig, std::move(*lock), std::move(lines)));
   if (const auto connected = manual->session_.connect(); !connected)
     return tl::unexpected(calibrate::Refusal{ExitCode::io, connected.error().text});
   return manual;
+}
+
+void tell_silence(const std::string& why) {
+  std::fprintf(stderr,
+               "the board does not respond (%s), so the fingers may be under pressure: check the pressures "
+               "before you reach into the gripper\n",
+               why.c_str());
 }
 
 Consent consent_on_terminal(bool yes) {

@@ -25,8 +25,11 @@ namespace softgrip::tools {
 /// a signal such as Ctrl-C ends the session.
 class ManualRig {
  public:
-  /// Locks the board and connects to it. `rig` must outlive the result.
-  [[nodiscard]] static calibrate::Expected<std::unique_ptr<ManualRig>> open(const rig::RigFile& rig);
+  /// Locks the board and connects to it. If `move` is true, also opens the digital lines of the rig; without
+  /// these lines, a rig with an emergency stop or an enable output is not moved. `rig` must outlive the
+  /// result.
+  [[nodiscard]] static calibrate::Expected<std::unique_ptr<ManualRig>> open(const rig::RigFile& rig,
+                                                                            bool move);
 
   [[nodiscard]] MotionSession& session() { return session_; }
   [[nodiscard]] const drivers::Board& board() const { return *board_; }
@@ -35,14 +38,18 @@ class ManualRig {
   [[nodiscard]] bool stopped() { return signals_.first() != 0; }
 
  private:
-  ManualRig(const rig::RigFile& rig, daemon::BoardLock lock);
+  ManualRig(const rig::RigFile& rig, daemon::BoardLock lock, std::unique_ptr<drivers::GpioLines> lines);
 
   daemon::BoardLock lock_;
   MonotonicClock clock_;
   std::unique_ptr<drivers::Board> board_;
+  std::unique_ptr<drivers::GpioLines> lines_;
   daemon::Signals signals_;
   MotionSession session_;
 };
+
+/// Prints that the board does not respond while the fingers are set to their rest pressures.
+void tell_silence(const std::string& why);
 
 /// Returns a function that requests consent on the terminal. With `yes`, the function always consents.
 [[nodiscard]] Consent consent_on_terminal(bool yes);

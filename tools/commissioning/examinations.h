@@ -1,6 +1,7 @@
 #pragma once
 // The examinations of `softgrip doctor`: computer, rig, bus, daemon and gateways.
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -33,9 +34,11 @@ struct MoveSettings {
 
 /// Examines board, watchdog, bus budget and sensors. If `move` is set, also moves each finger a little and
 /// compares the motion with the finger's model. At the end, the channels are at their rest pressures. If the
-/// user stops the examination, the stop counts as a failure.
+/// user stops the examination, the stop counts as a failure. `lines` are the digital lines of the rig, see
+/// MotionSession.
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
-                 bool move, const MoveSettings& settings, Findings& findings);
+                 bool move, const MoveSettings& settings, Findings& findings,
+                 drivers::GpioLines* lines = nullptr);
 
 /// Adds the finding that the displacement sensor of a channel is not used.
 void tell_unused_sensor(const std::string& channel, Findings& findings);
@@ -51,9 +54,9 @@ struct MonitorReading {
 /// Judges the pressure monitor of a channel.
 void judge_monitor(const std::string& channel, const MonitorReading& reading, Findings& findings);
 
-/// Examines the digital lines: requests them from the operating system, reads them and releases them. During
-/// the examination, the digital outputs are inactive.
-void examine_gpio(const rig::RigFile& rig, Findings& findings);
+/// Examines the digital lines: requests them from the operating system and reads them. The digital outputs
+/// become inactive. Returns the lines; nullptr if the rig has no lines or if they are not available.
+[[nodiscard]] std::unique_ptr<drivers::GpioLines> examine_gpio(const rig::RigFile& rig, Findings& findings);
 
 /// Examines the bus budget and the watchdog from the rig and board files, without an exchange with the board.
 void examine_description(const rig::RigFile& rig, const drivers::Board& board, Findings& findings);

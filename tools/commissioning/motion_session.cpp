@@ -11,6 +11,7 @@
 #include "daemon/loop/bus.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
+#include "tools/commissioning/motion_safety.h"
 
 namespace softgrip::tools {
 namespace {
@@ -19,6 +20,9 @@ using FailureKind = MotionFailure::Kind;
 
 /// Time after the ramp within which the board must confirm the rest pressures [s].
 constexpr double confirmation_s = 1;
+/// Time for which a measured pressure may be outside its limits, for example while it overshoots [s].
+constexpr double overshoot_s = 0.1;
+constexpr std::uint64_t least_cycles = 3;
 
 /// Computes the running mean and standard deviation (Welford, Technometrics 4, 1962).
 class Gathering {
@@ -96,14 +100,16 @@ struct MotionSession::Line {
 };
 
 MotionSession::MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock,
-                             StopRequest stop)
+                             StopRequest stop, drivers::GpioLines* lines)
     : rig_(rig),
       board_(board),
       clock_(clock),
       stop_(std::move(stop)),
+      lines_(lines),
       line_(std::make_unique<Line>(rig, board, clock)),
       schedule_(clock.now(), period_of(rig, board)),
-      readings_(board.channels()) {
+      readings_(board.channels()),
+      pressure_cycles_(board.channels()) {
   for (const control::ChannelSettings& channel : rig.settings.channels) {
     rest_.push_back(control::resting_kpa(channel.limits));
   }
@@ -151,6 +157,7 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   line_->take_events();
   const daemon::BusReport& report = line_->report();
   silent_cycles_ = report.health.consecutive_failures == 0 ? 0 : silent_cycles_ + 1 + skipped_cycles;
+  if (silent_cycles_ == 0) last_good_ = clock_.now();
   std::copy_n(report.readings.begin(), readings_.size(), readings_.begin());
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     commands_[i] = control::no_further(rest_[i], commands_[i], report.outputs_kpa[i]);
@@ -179,12 +186,36 @@ std::optional<MotionFailure> MotionSession::bus_failure() const {
 
 tl::unexpected<MotionFailure> MotionSession::end(MotionFailure failure) {
   ended_ = std::move(failure);
+  if (ended_->kind == FailureKind::emergency_stop) static_cast<void>(set_enable(false));
   return tl::unexpected(*ended_);
+}
+
+/// Returns a failure if the emergency stop of the rig is pressed or cannot be read. A single reading is
+/// sufficient, because a motion by hand can be repeated.
+std::optional<MotionFailure> MotionSession::emergency_stop() const {
+  const auto role = drivers::GpioRole::emergency_stop;
+  if (!rig_.gpio || !rig_.gpio->has(role)) return std::nullopt;
+  const std::optional<bool> pressed = lines_ == nullptr ? std::nullopt : lines_->read(role);
+  if (pressed && !*pressed) return std::nullopt;
+  return MotionFailure{
+      FailureKind::emergency_stop,
+      pressed ? "the emergency stop is pressed, or its wire is broken" : "the emergency stop cannot be read"};
+}
+
+/// Switches the enable output. Returns false if the output cannot be switched. If the rig has no enable
+/// output, returns true.
+bool MotionSession::set_enable(bool on) noexcept {
+  const auto role = drivers::GpioRole::enable;
+  if (!rig_.gpio || !rig_.gpio->has(role)) return true;
+  return lines_ != nullptr && lines_->write(role, on);
 }
 
 MotionSession::Expected<void> MotionSession::step(bool may_rise, const Watch& watch) {
   if (ended_) return tl::unexpected(*ended_);
   if (stop_()) return end({FailureKind::stopped, "stopped by the user"});
+  if (moved_) {
+    if (auto failure = emergency_stop()) return end(std::move(*failure));
+  }
   exchange(may_rise, false);
   if (auto failure = bus_failure()) return end(std::move(*failure));
   if (silent_cycles_ > 0) return {};
@@ -195,6 +226,7 @@ MotionSession::Expected<void> MotionSession::step(bool may_rise, const Watch& wa
   // A finger that creeps can leave its limits at a constant pressure.
   if (moved_) {
     if (auto failure = beyond()) return end(std::move(*failure));
+    if (auto failure = overpressure()) return end(std::move(*failure));
   }
   return {};
 }
@@ -245,8 +277,7 @@ MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double
   return samples;
 }
 
-void MotionSession::follow_targets(double speed_kpa_per_s) noexcept {
-  const double elapsed_s = seconds(schedule_.period());
+void MotionSession::follow_targets(double speed_kpa_per_s, double elapsed_s) noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const double furthest = speed_kpa_per_s * elapsed_s;
     const double wanted = std::clamp(targets_[i], commands_[i] - furthest, commands_[i] + furthest);
@@ -266,18 +297,40 @@ std::optional<MotionFailure> MotionSession::beyond() const {
   return std::nullopt;
 }
 
+/// Returns a failure if a measured pressure has been outside the pressure limits of its channel for several
+/// cycles. The valve or the pressure monitor may be the cause.
+std::optional<MotionFailure> MotionSession::overpressure() {
+  const std::uint64_t cycles =
+      std::max(least_cycles, static_cast<std::uint64_t>(overshoot_s / seconds(schedule_.period())));
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    const double pressure_kpa = readings_[i].pressure_kpa;
+    pressure_cycles_[i] = pressure_beyond(rig_, i, pressure_kpa) ? pressure_cycles_[i] + 1 : 0;
+    if (pressure_cycles_[i] < cycles) continue;
+    return MotionFailure{
+        FailureKind::pressure,
+        fmt::format("the pressure monitor of `{}` shows {}. Either the points of the valve or the points of "
+                    "the pressure monitor in the rig file are wrong: compare both with a manometer at a low "
+                    "pressure",
+                    rig_.settings.channels[i].name, beyond_text(rig_, i, pressure_kpa))};
+  }
+  return std::nullopt;
+}
+
 MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                                   const Watch& watch) {
+  if (ended_) return tl::unexpected(*ended_);
+  if (auto failure = emergency_stop()) return end(std::move(*failure));
   const control::LimitSettings& limits = rig_.settings.channels[channel].limits;
   targets_[channel] = control::in_range(limits, to_kpa);
   while (!may_rise_) {
     if (auto done = step(false, watch); !done) return done;
   }
   moved_ = true;
+  if (!set_enable(true)) return end({FailureKind::emergency_stop, "the enable output cannot be switched on"});
   while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
     // If the last write was not confirmed, the same commands are written once more. New commands could cause
     // a jump of the pressure after a reconnection.
-    if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
+    if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s, seconds(schedule_.period()));
     if (auto done = step(true, watch); !done) return done;
   }
   return {};
@@ -290,24 +343,51 @@ MotionSession::Expected<void> MotionSession::wait(const std::function<bool()>& d
   return {};
 }
 
-bool MotionSession::leave() noexcept {
+bool MotionSession::leave(const Warn& silent) noexcept {
   if (!ended_) ended_ = MotionFailure{FailureKind::stopped, "the motion has ended"};
+  const bool confirmed = rest(silent);
+  static_cast<void>(set_enable(false));
+  moved_ = false;
+  return confirmed;
+}
+
+/// Ramps all channels to their rest pressures. The ramp to rest continues even if the board does not respond.
+/// A board that reconnects during or after the ramp then receives the rest pressures. An attempt to connect
+/// may take much longer than a cycle, so the ramp then follows the time instead of the number of cycles.
+bool MotionSession::rest(const Warn& silent) noexcept {
   targets_ = rest_;
   double fastest = 0;
-  for (const control::ChannelSettings& channel : rig_.settings.channels) {
-    fastest = std::max({fastest, channel.limits.slew_down_kpa_per_s, channel.limits.slew_up_kpa_per_s});
+  double ramp_s = 0;
+  for (std::size_t i = 0; i < rest_.size(); ++i) {
+    const control::LimitSettings& limits = rig_.settings.channels[i].limits;
+    const double slew = commands_[i] > rest_[i] ? limits.slew_down_kpa_per_s : limits.slew_up_kpa_per_s;
+    ramp_s = std::max(ramp_s, std::abs(commands_[i] - rest_[i]) / slew);
+    fastest = std::max({fastest, limits.slew_down_kpa_per_s, limits.slew_up_kpa_per_s});
   }
+  const Nanoseconds watchdog = board_.watchdog_time().count();
+  Nanoseconds stepped = clock_.now();
+  const Nanoseconds ramp_end = stepped + nanoseconds(ramp_s);
   Nanoseconds give_up = 0;
-  // The ramp to rest continues even if the board does not respond. A board that reconnects during or after
-  // the ramp then receives the rest pressures.
+  bool told = !silent;
   while (!line_->shared.safe_state_confirmed.load(std::memory_order_relaxed)) {
-    follow_targets(fastest);
+    const Nanoseconds now = clock_.now();
+    const bool vented = watchdog > 0 && now - last_good_ >= watchdog;
+    const bool pressed = emergency_stop().has_value();
+    if (pressed) static_cast<void>(set_enable(false));
+    if (pressed || vented) commands_ = rest_;
+    const Nanoseconds elapsed = silent_cycles_ > 0 ? now - stepped : 0;
+    follow_targets(fastest, seconds(std::max(elapsed, schedule_.period())));
+    stepped = now;
     const bool rested = commands_ == targets_;
-    if (rested && give_up == 0) give_up = clock_.now() + nanoseconds(confirmation_s);
-    if (give_up != 0 && clock_.now() > give_up) return false;
+    const Nanoseconds rested_at = silent_cycles_ > 0 ? std::min(now, ramp_end) : now;
+    if (rested && give_up == 0) give_up = rested_at + nanoseconds(confirmation_s);
+    if (give_up != 0 && now > give_up) return false;
+    if (const bool down = silent_cycles_ >= rig_.settings.faults.bus_down_cycles; down && !told) {
+      told = true;
+      silent(complaint());
+    }
     exchange(false, rested);
   }
-  moved_ = false;
   return true;
 }
 

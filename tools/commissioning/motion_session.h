@@ -21,6 +21,9 @@
 namespace softgrip::rig {
 struct RigFile;
 }
+namespace softgrip::drivers {
+class GpioLines;
+}
 
 namespace softgrip::tools {
 
@@ -50,10 +53,13 @@ struct ChannelSample {
 /// The reason why a motion of a session has ended.
 struct MotionFailure {
   enum class Kind : std::uint8_t {
-    stopped,  ///< the user stopped the motion
-    bus,      ///< the board did not respond, or its outputs differ from the values that the session wrote
-    beyond,   ///< the finger left the displacement limits of its channel
-    blind,    ///< a sensor that the motion requires gives no valid readings
+    stopped,   ///< the user stopped the motion
+    bus,       ///< the board did not respond, or its outputs differ from the values that the session wrote
+    beyond,    ///< the finger left the displacement limits of its channel
+    pressure,  ///< the measured pressure left the pressure limits of its channel
+    blind,     ///< a sensor that the motion requires gives no valid readings
+    emergency_stop,  ///< the emergency stop is pressed or cannot be read, or the enable output cannot be
+                     ///< switched on
   };
   Kind kind = Kind::bus;
   std::string text;
@@ -76,6 +82,12 @@ struct Sight {
 /// - The session ends if a gap reaches the watchdog time.
 /// - The session ends if the board reports a trip, rejects a write or was written by another client.
 /// - The session ends if the board does not respond for `bus_down_cycles`.
+/// - The session ends if a measured pressure is outside the pressure limits of its channel for several
+/// cycles.
+/// - If the rig has an emergency stop, the session moves no finger while the emergency stop is pressed. If
+/// the emergency stop is pressed during a motion, the session ends, and leave() writes the rest pressures at
+/// once.
+/// - The enable output is on from the first ramp until the end of leave().
 /// - After its end, the session moves nothing, and every later call returns the same failure. Only leave()
 /// still writes. Its values are not further from rest than the present outputs.
 /// - The session writes the rest pressures from the first exchange on. After its destruction, all channels
@@ -87,10 +99,14 @@ class MotionSession {
   /// Called after every successful exchange, with the commands and the readings of this exchange.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
+  /// Called with the reason when the board stops responding.
+  using Warn = std::function<void(const std::string& why)>;
 
   /// Creates a session for `board`, which must not be connected yet. The session uses `clock` for all waits
-  /// and to measure gaps in communication. All references must outlive the session.
-  MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop);
+  /// and to measure gaps in communication. `lines` are the digital lines of the rig. Without `lines`, a rig
+  /// with an emergency stop or an enable output is not moved. All references must outlive the session.
+  MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
+                drivers::GpioLines* lines = nullptr);
   MotionSession(const MotionSession&) = delete;
   MotionSession& operator=(const MotionSession&) = delete;
   MotionSession(MotionSession&&) = delete;
@@ -104,15 +120,17 @@ class MotionSession {
   /// Holds the commands for `duration_s` and returns the statistics of the readings of every channel.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
   /// Ramps the command of one channel to `to_kpa` at `speed_kpa_per_s`, within the slew limits. The session
-  /// ends if a finger leaves its displacement limits.
+  /// ends if a finger leaves its displacement limits or its pressure limits.
   [[nodiscard]] Expected<void> ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                     const Watch& watch = {});
   /// Holds all commands and exchanges data with the board until `done` returns true. A caller uses it, for
   /// example, while a person answers a question.
   [[nodiscard]] Expected<void> wait(const std::function<bool()>& done);
   /// Ramps all channels to their rest pressures within the slew limits and ends the session. Returns true if
-  /// the board confirmed the rest pressures.
-  bool leave() noexcept;
+  /// the board confirmed the rest pressures. The rest pressures are written at once if the emergency stop is
+  /// pressed, or if the board has not responded for its watchdog time. While the board does not respond, the
+  /// ramp continues in time. Calls `silent` at most once, when the board does not respond.
+  bool leave(const Warn& silent = {}) noexcept;
 
   [[nodiscard]] double command_kpa(std::size_t channel) const { return commands_[channel]; }
   [[nodiscard]] Nanoseconds period() const noexcept { return schedule_.period(); }
@@ -128,8 +146,12 @@ class MotionSession {
   [[nodiscard]] std::optional<MotionFailure> bus_failure() const;
   [[nodiscard]] std::string complaint() const;
   [[nodiscard]] tl::unexpected<MotionFailure> end(MotionFailure failure);
-  void follow_targets(double speed_kpa_per_s) noexcept;
+  void follow_targets(double speed_kpa_per_s, double elapsed_s) noexcept;
+  [[nodiscard]] bool rest(const Warn& silent) noexcept;
   [[nodiscard]] std::optional<MotionFailure> beyond() const;
+  [[nodiscard]] std::optional<MotionFailure> overpressure();
+  [[nodiscard]] std::optional<MotionFailure> emergency_stop() const;
+  [[nodiscard]] bool set_enable(bool on) noexcept;
   [[nodiscard]] bool seen() const;
   [[nodiscard]] MotionFailure blind() const;
 
@@ -137,6 +159,7 @@ class MotionSession {
   drivers::Board& board_;
   const Clock& clock_;
   StopRequest stop_;
+  drivers::GpioLines* lines_;
   std::unique_ptr<Line> line_;
   PeriodicSchedule schedule_;
   bool moved_ = false;
@@ -146,7 +169,10 @@ class MotionSession {
   std::vector<double> targets_;
   std::vector<double> rest_;
   std::vector<model::Reading> readings_;
-  std::uint64_t silent_cycles_ = 0;  // number of cycles since the last successful exchange
+  std::uint64_t silent_cycles_ = 0;             // number of cycles since the last successful exchange
+  Nanoseconds last_good_ = 0;                   // end of the last successful exchange
+  std::vector<std::uint64_t> pressure_cycles_;  // by channel: number of cycles since the measured pressure
+                                                // was last inside its limits
   std::optional<Sight> required_;
   std::uint32_t blind_cycles_ = 0;  // number of cycles since all required sensors last had valid readings
   bool may_rise_ = true;  // true: all required sensors have had valid readings since the call of require()

@@ -1,7 +1,6 @@
 #include "tools/commissioning/procedure.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <tuple>
 
@@ -9,6 +8,7 @@
 
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
+#include "tools/commissioning/motion_safety.h"
 
 namespace softgrip::tools::calibrate {
 namespace {
@@ -40,7 +40,9 @@ Refusal refusal_of(const MotionFailure& failure) {
     case MotionFailure::Kind::bus:
       return {ExitCode::io, failure.text};
     case MotionFailure::Kind::beyond:
+    case MotionFailure::Kind::pressure:
     case MotionFailure::Kind::blind:
+    case MotionFailure::Kind::emergency_stop:
       return {ExitCode::not_acceptable, failure.text};
   }
   return {};
@@ -209,6 +211,10 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
                    fmt::format("manometer reading at the {} pressure, kPa", upper ? "second" : "first"));
     if (!shown) return tl::unexpected(shown.error());
     reference = *shown;
+    const auto why = tools::refusal_of(
+        rig, settings.channel,
+        {session.command_kpa(settings.channel), reference, upper ? settings.low_kpa : settings.high_kpa});
+    if (why) return tl::unexpected(nonsense(*why));
   }
   const auto halves = average(session, settings);
   if (!halves) return tl::unexpected(halves.error());
@@ -246,19 +252,6 @@ void set_places(Settings& settings, const control::LimitSettings& limits) {
   const double span_kpa = control::far_end_kpa(limits) - rest_kpa;
   std::tie(settings.low_kpa, settings.high_kpa) =
       std::minmax({rest_kpa + span_kpa / 6, rest_kpa + 2 * span_kpa / 3});
-}
-
-std::optional<double> typed_number(std::string text) {
-  std::replace(text.begin(), text.end(), ',', '.');
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return std::nullopt;
-  const auto last = text.find_last_not_of(" \t\r");
-  const char* const begin = text.data() + first + (text[first] == '+' ? 1 : 0);
-  const char* const end = text.data() + last + 1;
-  double value = 0;
-  const auto result = std::from_chars(begin, end, value);
-  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,

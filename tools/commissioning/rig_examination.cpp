@@ -11,6 +11,7 @@
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
 #include "tools/commissioning/motion.h"
+#include "tools/commissioning/motion_safety.h"
 
 namespace softgrip::tools::doctor {
 namespace {
@@ -26,16 +27,6 @@ std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus statu
   if (std::holds_alternative<drivers::IioSettings>(rig.board))
     return "compare `device` and `channel` in the rig file with the converters of this computer";
   return std::string(bus_advice(drivers::name_of(status)));
-}
-
-/// Returns true if a finger may hold a part. The part could drop, because an examination writes the rest
-/// pressures to the board even if no finger is moved.
-bool may_hold_a_part(const rig::RigFile& rig) {
-  const auto& safety = rig.settings.safety;
-  const bool holds =
-      std::any_of(safety.safe_action.begin(), safety.safe_action.end(),
-                  [](control::SafeAction action) { return action == control::SafeAction::hold; });
-  return holds && !safety.board_vents_when_silent;
 }
 
 void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times, Findings& findings) {
@@ -132,6 +123,11 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
       return findings.fail(name, failure.text,
                            "inspect the finger, calibrate the sensor, and compare the range of the sensor "
                            "with the displacement limits");
+    case MotionFailure::Kind::pressure:
+      return findings.fail(name, failure.text, "calibrate the valve with a manometer");
+    case MotionFailure::Kind::emergency_stop:
+      return findings.fail(name, failure.text,
+                           "see `gpio`; release the emergency stop, then repeat the command");
   }
 }
 
@@ -262,8 +258,8 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
 }
 
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
-                 bool move, const MoveSettings& settings, Findings& findings) {
-  MotionSession session(rig, board, clock, std::move(stop));
+                 bool move, const MoveSettings& settings, Findings& findings, drivers::GpioLines* lines) {
+  MotionSession session(rig, board, clock, std::move(stop), lines);
   if (const auto connected = session.connect(); !connected) {
     failed(connected.error(), rig, "board", findings);
     return leave_channels(rig, "the board does not respond", findings);
@@ -316,15 +312,16 @@ void judge_monitor(const std::string& channel, const MonitorReading& reading, Fi
   }
 }
 
-void examine_gpio(const rig::RigFile& rig, Findings& findings) {
-  if (!rig.gpio) return;
-  const auto lines = drivers::open_gpio_lines(rig.gpio->lines);
+std::unique_ptr<drivers::GpioLines> examine_gpio(const rig::RigFile& rig, Findings& findings) {
+  if (!rig.gpio) return nullptr;
+  auto lines = drivers::open_gpio_lines(rig.gpio->lines);
   if (!lines) {
     const drivers::GpioFailure& failure = lines.error();
     const document::Problem& place = rig.gpio->places[failure.line];
-    return findings.fail(
-        "gpio", fmt::format("{}:{}:{}: {}", place.file, place.at.line, place.at.column, failure.message),
-        failure.hint);
+    findings.fail("gpio",
+                  fmt::format("{}:{}:{}: {}", place.file, place.at.line, place.at.column, failure.message),
+                  failure.hint);
+    return nullptr;
   }
   for (const drivers::GpioLineSettings& line : rig.gpio->lines) {
     const std::string name = "gpio " + std::string(drivers::name_of(line.role));
@@ -346,6 +343,7 @@ void examine_gpio(const rig::RigFile& rig, Findings& findings) {
                                                             : ": no part"));
     }
   }
+  return std::move(*lines);
 }
 
 }  // namespace softgrip::tools::doctor

@@ -3,9 +3,25 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace softgrip::tools::calibrate {
+
+std::optional<double> typed_number(std::string text) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return std::nullopt;
+  const auto last = text.find_last_not_of(" \t\r");
+  const char* const begin = text.data() + first + (text[first] == '+' ? 1 : 0);
+  const char* const end = text.data() + last + 1;
+  double value = 0;
+  const auto result = std::from_chars(begin, end, value);
+  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
 
 TerminalOperator::TerminalOperator() : interactive_(::isatty(STDIN_FILENO) == 1) {}
 

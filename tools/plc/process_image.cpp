@@ -48,7 +48,10 @@ std::uint16_t number_in(std::string_view code) {
 /// the default of the sequence applies.
 std::optional<double> requested_value(std::uint16_t counts, double resolution) {
   if (counts == no_value) return std::nullopt;
-  return static_cast<std::int16_t>(counts) * resolution;
+  const auto number = static_cast<double>(static_cast<std::int16_t>(counts));
+  // 0.01 has no exact binary value, so 460 * 0.01 is larger than 4.6. A division by 100 gives 4.6.
+  const double per_unit = std::round(1 / resolution);
+  return per_unit * resolution == 1 ? number / per_unit : number * resolution;
 }
 
 }  // namespace

@@ -5,10 +5,16 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <cstdio>
 #include <utility>
 
 namespace softgrip::plc {
+namespace {
+
+/// Largest number of refused addresses that are printed.
+constexpr std::size_t most_refused = 100;
+
+}  // namespace
 
 std::string address_of(int socket) {
   sockaddr_storage peer{};
@@ -19,10 +25,7 @@ std::string address_of(int socket) {
                     NI_NUMERICHOST) != 0) {
     return {};
   }
-  std::string_view name(host.data());
-  constexpr std::string_view four_in_six = "::ffff:";
-  if (name.starts_with(four_in_six)) name.remove_prefix(four_in_six.size());
-  return std::string(name);
+  return net::normal_address(host.data());
 }
 
 Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals)
@@ -72,7 +75,12 @@ void Server::accept(Nanoseconds now) {
   if (!socket) return;
   const std::string address = address_of(socket.get());
   const std::vector<std::string>& allow = settings_.allow;
-  if (std::find(allow.begin(), allow.end(), address) == allow.end()) return;
+  if (std::find(allow.begin(), allow.end(), address) == allow.end()) {
+    if (refused_.size() < most_refused && refused_.insert(address).second)
+      std::fprintf(stderr, "refused a connection from %s: the address is not listed in `allow`\n",
+                   address.c_str());
+    return;
+  }
   if (const auto id = gateway_.connections().admit(address, now))
     sessions_.push_back({*id, modbus::Connection(std::move(socket))});
 }

@@ -2,6 +2,7 @@
 // Serves Modbus clients on the network in one thread that never waits for a client.
 
 #include <list>
+#include <set>
 #include <string>
 
 #include "base/clock.h"
@@ -30,6 +31,7 @@ class Server {
   /// Closes one connection, because the process uses more descriptors than it may have. Returns false if
   /// there is no connection to close.
   [[nodiscard]] bool close_newest_session();
+  /// Accepts a connection from a permitted address. Prints each refused address once.
   void accept(Nanoseconds now);
   /// Processes the events of a connection. Returns false if the connection has ended or must be closed.
   [[nodiscard]] bool serve(Session& session, net::PollSet::Events events, Nanoseconds now);
@@ -41,6 +43,7 @@ class Server {
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Session> sessions_;
+  std::set<std::string> refused_;  // addresses that were refused and printed
 };
 
 /// Returns the numeric address of the other end of a socket. An IPv4 address in IPv6 notation is returned in

@@ -107,5 +107,14 @@ TEST_F(AcceptorTest, AcceptsNoClientWithoutAListener) {
   EXPECT_FALSE(none.accept(0));
 }
 
+TEST(NormalAddress, AllNotationsOfAnAddressAreEqual) {
+  EXPECT_EQ(normal_address("10.0.0.5"), "10.0.0.5");
+  EXPECT_EQ(normal_address("::FFFF:10.0.0.5"), "10.0.0.5");
+  EXPECT_EQ(normal_address("FE80:0:0:0:0:0:0:1"), "fe80::1");
+  EXPECT_EQ(normal_address("0:0::1"), "::1");
+  EXPECT_EQ(normal_address("fe80::1%eth0"), "fe80::1%eth0");
+  EXPECT_EQ(normal_address("plc"), "plc");
+}
+
 }  // namespace
 }  // namespace softgrip::net::listener_test

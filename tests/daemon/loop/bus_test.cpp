@@ -363,6 +363,25 @@ TEST_F(BusTest, ANewConnectionFailureReasonIsReportedOnce) {
   }
 }
 
+/// A board of converters opens a session although a converter is missing. Its first exchange then fails.
+TEST_F(BusTest, ANewReasonOfAFailedFirstExchangeIsReportedOnce) {
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::disconnected;
+  board_.said = "gone";
+  step();
+  board_.said = "it was mcp4725 at 1-0060, but now it is mcp4725 at 1-0062";
+  std::vector<std::string> again;
+  for (int i = 0; i < 5; ++i) {
+    clock_.advance(60'000'000'000);
+    step();
+    for (BusEvent event; shared_.bus_events.pop(event);) {
+      if (event.kind == BusEvent::Kind::not_connected) again.emplace_back(event.detail.data());
+    }
+  }
+  EXPECT_EQ(again, std::vector<std::string>{board_.said});
+}
+
 /// If a board accepts a connection and closes it immediately, no event may report that the board is
 /// connected.
 TEST_F(BusTest, AConnectionIsReportedAfterTheFirstResponse) {

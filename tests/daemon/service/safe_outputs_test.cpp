@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
+#include "base/files.h"
 #include "base/periodic_schedule.h"
+#include "drivers/iio/iio_board.h"
 #include "tests/daemon/scripted_board.h"
 
 namespace softgrip::daemon::safe_outputs_test {
@@ -82,6 +86,36 @@ TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
   EXPECT_EQ(board_.written.size(), 2U);
   EXPECT_EQ(board_.connect_attempts.size(), 3U);  // one connection at the start, one after each of the 2
                                                   // exchanges without a response
+}
+
+TEST_F(SafeOutputsTest, VentsTheOutputsOfConvertersIfAnInputIsMissing) {
+  const ScratchFolder root;
+  std::filesystem::create_directory(root.path() + "/iio:device0");
+  const std::string dac = root.path() + "/iio:device0/";
+  std::ofstream(dac + "name") << "dac7578\n";
+  drivers::IioSettings settings;
+  settings.root = root.path();
+  settings.inputs = {{"ads1115", "voltage0", 0}};
+  for (const std::string channel : {"voltage0", "voltage1"}) {
+    std::ofstream(dac + "out_" + channel + "_raw") << "2000\n";
+    std::ofstream(dac + "out_" + channel + "_scale") << "0.8\n";
+    drivers::ChannelWiring wiring;
+    wiring.valve.output = settings.outputs.size();
+    wiring.valve.scaling = {0, 0, 3.2, 100};
+    settings.outputs.push_back({"dac7578", channel, 4095});
+    settings.wiring.push_back(wiring);
+  }
+  drivers::IioBoard converters(settings);
+  const SafeOutputsReport report = write(converters, std::chrono::milliseconds(20));
+  EXPECT_EQ(report.end, SafeOutputsEnd::board_silent);
+  EXPECT_NE(report.text.find("`ads1115`"), std::string::npos) << report.text;
+  const auto raw_of = [&](const std::string& channel) {
+    long raw = -1;
+    std::ifstream(dac + "out_" + channel + "_raw") >> raw;
+    return raw;
+  };
+  EXPECT_EQ(raw_of("voltage0"), 0);
+  EXPECT_EQ(raw_of("voltage1"), 80) << "the rest pressure is 2 kPa";
 }
 
 TEST_F(SafeOutputsTest, ALongPauseOfTheRigFileDoesNotPreventTheNextAttempt) {

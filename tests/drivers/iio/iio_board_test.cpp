@@ -65,9 +65,10 @@ class IioBoardTest : public testing::Test {
   BusStatus exchange(IioBoard& board, double left, double right) {
     return board.exchange(std::array{left, right}, readings_, 5s);
   }
+  /// Returns the reason why no exchange with a new board succeeds.
   std::string refusal() {
     IioBoard board(settings_);
-    EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
+    static_cast<void>(board.connect(5s));
     EXPECT_EQ(exchange(board, 0, 0), BusStatus::disconnected);
     return board.detail();
   }
@@ -201,7 +202,7 @@ TEST_F(IioBoardTest, ClearsASharedPowerdownAttribute) {
   EXPECT_EQ(get("iio:device1/out_voltage_powerdown"), "0");
 }
 
-TEST_F(IioBoardTest, APowerdownThatIsInaccessibleIsRefusedBeforeAnyWrite) {
+TEST_F(IioBoardTest, APowerdownThatIsInaccessibleIsRefused) {
   put("iio:device1/out_voltage1_powerdown", "off");
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
@@ -214,7 +215,7 @@ TEST_F(IioBoardTest, APowerdownThatIsInaccessibleIsRefusedBeforeAnyWrite) {
   EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
 }
 
-TEST_F(IioBoardTest, APowerdownThatPersistsEndsTheSessionAndBlocksTheNext) {
+TEST_F(IioBoardTest, APowerdownThatPersistsEndsThisSessionAndTheNext) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   // The kernel accepts a write of any number to the file urandom_min_reseed_secs. However, the file then
   // still contains a value above 0.
@@ -228,7 +229,10 @@ TEST_F(IioBoardTest, APowerdownThatPersistsEndsTheSessionAndBlocksTheNext) {
             std::string::npos)
       << board.detail();
   EXPECT_EQ(readings_[0].sequence, 0U);
-  EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
+  EXPECT_EQ(board.connect(5s), BusStatus::ok);
+  put("iio:device1/out_voltage0_raw", "1234");
+  EXPECT_EQ(exchange(board, 0, 0), BusStatus::disconnected);
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0") << "the other output must vent";
   EXPECT_NE(std::string(board.detail()).find("is still 1 after 0 was written"), std::string::npos)
       << board.detail();
   fs::remove(powerdown);
@@ -309,6 +313,90 @@ TEST_F(IioBoardTest, RefusesOneConverterChannelWithTwoNames) {
   settings_.outputs[1] = {"dac7578", "voltage1", 4095};
   settings_.inputs[1] = {"iio:device0", "voltage0", 0};
   EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
+}
+
+/// Tests boards with a missing converter. The outputs of the other converters must follow the commands, so
+/// that they vent.
+class IioMissingTest : public IioBoardTest {
+ protected:
+  IioMissingTest() {
+    put("iio:device2/name", "mcp4725");
+    put("iio:device2/out_voltage0_raw", "0");
+    put("iio:device2/out_voltage0_scale", "0.8");
+    put("iio:device1/out_voltage2_raw", "0");
+    settings_.outputs[1] = {"mcp4725", "voltage0", 4095};
+    settings_.heartbeat = IioHeartbeat{{"dac7578", "voltage2", 0}, 0, 4095, 0.5};
+  }
+  /// Pressurises both fingers, and removes a converter.
+  void lose(IioBoard& board, const std::string& node) {
+    ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+    ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
+    fs::remove_all(root_ / node);
+  }
+  /// Writes the rest pressures in a new session. Neither the session nor the heartbeat may succeed.
+  std::string vent(IioBoard& board) {
+    const std::string heartbeat = get("iio:device1/out_voltage2_raw");
+    EXPECT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+    EXPECT_EQ(exchange(board, 0, 0), BusStatus::disconnected);
+    EXPECT_EQ(get("iio:device1/out_voltage2_raw"), heartbeat);
+    return board.detail();
+  }
+};
+
+TEST_F(IioMissingTest, TheOutputsVentWithoutAnInput) {
+  IioBoard board(settings_);
+  lose(board, "iio:device0");
+  EXPECT_NE(vent(board).find("no converter of this computer is called `ads1115`"), std::string::npos);
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+  EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "0");
+}
+
+TEST_F(IioMissingTest, ANewProcessVentsTheOutputsWithoutAnInput) {
+  put("iio:device1/out_voltage0_raw", "2000");
+  fs::remove_all(root_ / "iio:device0");
+  IioBoard board(settings_);
+  EXPECT_NE(vent(board).find("`ads1115`"), std::string::npos);
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+}
+
+TEST_F(IioMissingTest, AnInputThatCannotBeReadDoesNotPreventTheVent) {
+  put("iio:device1/out_voltage0_raw", "2000");
+  put("iio:device0/in_voltage1_raw", "no");
+  IioBoard board(settings_);
+  EXPECT_NE(vent(board).find("voltage1: no number"), std::string::npos);
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+}
+
+TEST_F(IioMissingTest, TheFirstOutputVentsWithoutTheSecond) {
+  IioBoard board(settings_);
+  lose(board, "iio:device2");
+  EXPECT_NE(vent(board).find("no converter of this computer is called `mcp4725`"), std::string::npos);
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+}
+
+TEST_F(IioMissingTest, TheSecondOutputVentsWithoutTheFirst) {
+  IioBoard board(settings_);
+  lose(board, "iio:device1");
+  EXPECT_NE(vent(board).find("no converter of this computer is called `dac7578`"), std::string::npos);
+  EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "0");
+}
+
+/// A write to /dev/full fails with ENOSPC.
+TEST_F(IioMissingTest, TheOtherOutputIsWrittenAfterAFailedWrite) {
+  fs::remove(root_ / "iio:device1/out_voltage0_raw");
+  fs::create_symlink("/dev/full", root_ / "iio:device1/out_voltage0_raw");
+  put("iio:device2/out_voltage0_raw", "2000");
+  IioBoard board(settings_);
+  EXPECT_NE(vent(board).find("dac7578 voltage0: No space left on device"), std::string::npos);
+  EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "0");
+}
+
+TEST_F(IioMissingTest, NoOutputMeansNoSession) {
+  fs::remove_all(root_ / "iio:device1");
+  fs::remove_all(root_ / "iio:device2");
+  IioBoard board(settings_);
+  EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
+  EXPECT_NE(std::string(board.detail()).find("`dac7578`"), std::string::npos) << board.detail();
 }
 
 /// Tests converters on a bus. A converter disappears and returns, and the kernel then gives it another device

@@ -64,6 +64,31 @@ TEST(PlcSettings, InvalidSettingsAreReportedWithTheReason) {
   EXPECT_NE(said_of("silence_s", "silence_ms").find("silence_s"), std::string::npos);
 }
 
+TEST(PlcSettings, AResolutionMustBeFinite) {
+  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: inf kPa").find("not a resolution"), std::string::npos);
+}
+
+TEST(PlcSettings, EachNotationOfAPermittedAddressIsAccepted) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/plc.yaml";
+  std::string text = shipped();
+  const std::string was = "allow: [127.0.0.1]";
+  text.replace(text.find(was), was.size(),
+               "allow: [\"FE80:0:0:0:0:0:0:1\", \"::ffff:10.0.0.5\", 10.0.0.5, \"fe80::1\"]");
+  std::ofstream(path) << text;
+  document::Problems problems;
+  const auto settings = load_settings(path, problems);
+  ASSERT_TRUE(settings) << problems.format();
+  EXPECT_EQ(settings->allow, (std::vector<std::string>{"fe80::1", "10.0.0.5"}));
+}
+
+TEST(PlcSettings, EveryPermittedAddressMustFindAConnection) {
+  const std::string five = "allow: [10.0.0.1, 10.0.0.2, 10.0.0.3, 10.0.0.4, 10.0.0.5]";
+  EXPECT_NE(said_of("allow: [127.0.0.1]", five).find("5 addresses may connect, but `max_masters` is 4"),
+            std::string::npos);
+  EXPECT_EQ(said_of("allow: [127.0.0.1]", "allow: [10.0.0.1, 10.0.0.2, 10.0.0.3, 10.0.0.4]"), "");
+}
+
 TEST(PlcSettings, ANetworkAddressRequiresAListOfClients) {
   const std::string said = said_of(
       "address: 127.0.0.1            # loopback; for a PLC the address of this computer in "

@@ -84,6 +84,53 @@ TEST(CommissioningRun, KeepsAFingerThatIsSofterThanTheModelWithinTheLimits) {
   }
 }
 
+/// Adds a threshold to a model: the finger moves only above this pressure.
+void add_threshold(model::Model& model, double threshold_kpa) {
+  const auto id_of = [](std::size_t type) { return std::string_view(model::catalogue()[type].info.id); };
+  std::size_t type = 0;
+  while (id_of(type) != "actuator_threshold") ++type;
+  const auto actuator = std::find_if(model.blocks.begin(), model.blocks.end(),
+                                     [&](const auto& block) { return id_of(block.type) == "bouc_wen"; });
+  model.blocks.insert(actuator, {type, {threshold_kpa}});
+}
+
+/// Returns the rig of config/rig.yaml, with a model that moves only above a threshold of the pressure.
+ExperimentRig rig_with_threshold(double threshold_kpa) {
+  ExperimentRig rig = free_rig();
+  add_threshold(rig.rig.settings.channels[rig.channel].model, threshold_kpa);
+  return rig;
+}
+
+/// The finger never moves, and its readings contain noise. The pressure follows the command.
+TEST(CommissioningRun, RefusesAFingerThatDoesNotMoveAboveTheThresholdOfItsModel) {
+  ExperimentRig rig = rig_with_threshold(20);
+  auto& plants = std::get<simulation::SimulatedBoardSettings>(rig.rig.board).channels;
+  for (auto& channel : plants) add_threshold(channel.plant.model, 1000);
+  CommissioningOptions options = short_one();
+  std::string told;
+  options.tell = [&](const std::string& line) { told = line; };
+  const auto runs = play_commissioning(rig, options);
+  ASSERT_FALSE(runs);
+  EXPECT_EQ(runs.error().code, ExitCode::not_acceptable);
+  EXPECT_NE(runs.error().why.find("the finger hardly moved"), std::string::npos) << runs.error().why;
+  EXPECT_EQ(told, "first: gentle_motion, up to 30 kPa, 10 s");
+}
+
+TEST(CommissioningRun, RefusesAModelThatPredictsNoMotion) {
+  ExperimentRig rig = rig_with_threshold(70);
+  rig.simulated = false;
+  CommissioningOptions options = short_one();
+  options.consent = [](const std::string& what) {
+    ADD_FAILURE() << what;
+    return false;
+  };
+  const auto runs = play_commissioning(rig, options);
+  ASSERT_FALSE(runs);
+  EXPECT_EQ(runs.error().code, ExitCode::not_acceptable);
+  EXPECT_NE(runs.error().why.find("predicts a motion of 0 mm at 60 kPa"), std::string::npos)
+      << runs.error().why;
+}
+
 TEST(CommissioningRun, TheExperimentMenuContainsEveryDefaultExperiment) {
   const auto menu = sysid::experiment_menu({});
   for (const std::string& name : usual_commissioning()) {

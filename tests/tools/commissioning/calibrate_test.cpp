@@ -471,5 +471,32 @@ TEST_F(CalibrateTest, WarnsIfLessThanAFifthOfTheValveRangeIsUsed) {
   EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}, {}}).find("less than 1/5"), std::string::npos);
 }
 
+/// The valve gives 2.5 times the commanded pressure. The operator types this pressure at the first position.
+TEST_F(CalibrateTest, AManometerReadingAboveTheCommandPreventsTheSecondPosition) {
+  make();
+  WatchedBoard board(*board_);
+  MotionSession session(rig_, board, time_.clock, time_.stop());
+  ASSERT_TRUE(session.connect());
+  KnowingOperator person([] { return "25"; });
+  const auto result = calibrate_valve(rig_, session, person, settings_, false);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ExitCode::not_acceptable);
+  EXPECT_NE(result.error().text.find("a command of 40 kPa would give about 96 kPa"), std::string::npos)
+      << result.error().text;
+  EXPECT_EQ(person.asked.size(), 1U);
+  EXPECT_LE(board.highest_kpa, settings_.low_kpa);
+}
+
+TEST_F(CalibrateTest, APressedEmergencyStopPreventsTheCalibration) {
+  rig_.gpio.emplace();
+  rig_.gpio->lines.resize(1);
+  make();
+  KnowingOperator person([] { return "10"; });
+  const auto result = calibrate_sensor(rig_, *session_, person, settings_);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ExitCode::not_acceptable);
+  EXPECT_NE(result.error().text.find("the emergency stop cannot be read"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace softgrip::tools::calibrate::calibrate_test

@@ -14,6 +14,7 @@
 #include "rig/rig_file.h"
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
+#include "tests/daemon/scripted_lines.h"
 #include "tests/support/files.h"
 #include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
@@ -208,6 +209,22 @@ TEST_F(DoctorTest, AWatchdogThatReadersFeedAndASecondClientCauseWarnings) {
   again(false, 2);
   expect("watchdog", Verdict::ok, "vents if communication stops");
   expect("clients", Verdict::ok, "number of clients at the board: 2");
+}
+
+TEST_F(DoctorTest, APressedEmergencyStopPreventsTheMotionButNotTheReadings) {
+  rig_.gpio.emplace();
+  rig_.gpio->lines.resize(1);
+  daemon::testing::Terminals terminals;
+  const auto lines = terminals.lines();
+  terminals.set(drivers::GpioRole::emergency_stop, true);
+  make_board();
+  NotingBoard board(*board_);
+  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_, lines.get());
+  expect("sensor left", Verdict::ok, "mm");
+  expect("motion left", Verdict::fail, "the emergency stop is pressed");
+  expect_not_judged("motion right", "see `motion left`");
+  EXPECT_EQ(board.highest_kpa[0], 0);
+  EXPECT_EQ(board.highest_kpa[1], 0);
 }
 
 TEST_F(DoctorTest, WithoutAWatchdogAStaticCheckDoesNotAccessTheBoard) {

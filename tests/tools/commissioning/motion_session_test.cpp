@@ -11,6 +11,7 @@
 
 #include "rig/rig_file.h"
 #include "tests/daemon/rig_under_test.h"
+#include "tests/daemon/scripted_lines.h"
 
 namespace softgrip::tools::motion_session_test {
 namespace {
@@ -56,7 +57,10 @@ class VentingBoard final : public drivers::Board {
   [[nodiscard]] std::size_t channels() const noexcept override { return 2; }
   [[nodiscard]] BusStatus connect(std::chrono::nanoseconds) noexcept override {
     ++sessions;
-    return next_connect;
+    const bool gone =
+        how == BusStatus::disconnected && clock_.now() >= lost_from && clock_.now() < lost_until;
+    if (gone) clock_.pass(connect_takes);
+    return gone ? how : next_connect;
   }
   [[nodiscard]] BusStatus exchange(std::span<const double> commands_kpa, std::span<model::Reading> readings,
                                    std::chrono::nanoseconds limit) noexcept override {
@@ -70,7 +74,8 @@ class VentingBoard final : public drivers::Board {
       readings[i].sampled_at = clock_.now();
       readings[i].validity = validity;
       readings[i].displacement_mm = outputs_kpa[i] / 3 + crept_mm;
-      readings[i].pressure_kpa = monitored ? outputs_kpa[i] : std::nan("");
+      readings[i].pressure_kpa =
+          monitored ? outputs_kpa[i] * monitor_gain + monitor_offset_kpa : std::nan("");
       ++readings[i].sequence;
     }
     return BusStatus::ok;
@@ -91,6 +96,7 @@ class VentingBoard final : public drivers::Board {
 
   Nanoseconds watchdog_ns = watchdog;
   BusStatus next_connect = BusStatus::ok;
+  Nanoseconds connect_takes = 0;      ///< duration of a failed attempt to connect [ns]
   std::function<void()> on_exchange;  ///< function to call before a request reaches the board
   Nanoseconds lost_from = never;      ///< time from which exchanges fail [ns]
   Nanoseconds lost_until = never;     ///< time from which exchanges succeed again [ns]
@@ -98,7 +104,9 @@ class VentingBoard final : public drivers::Board {
   bool request_arrives = false;  ///< true: in a failed exchange, the request has arrived, and only the
                                  ///< response is lost
   model::Validity validity = model::Validity::valid;
-  double crept_mm = 0;    ///< additional displacement of the fingers [mm]
+  double crept_mm = 0;      ///< additional displacement of the fingers [mm]
+  double monitor_gain = 1;  ///< measured pressure divided by the output
+  double monitor_offset_kpa = 0;
   bool monitored = true;  ///< false: the pressure monitors give no readings
 
   std::vector<double> outputs_kpa{0, 0};
@@ -419,6 +427,179 @@ TEST_F(MotionSessionTest, AFingerThatCreepsBeyondItsLimitsEndsTheMotion) {
   EXPECT_EQ(creeping.error().kind, Kind::beyond);
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
+}
+
+/// The limit of the rig file is 60 kPa, and the monitor shows up to 90 kPa.
+TEST_F(MotionSessionTest, AMeasuredPressureAboveTheLimitEndsTheMotion) {
+  board_.monitor_gain = 3;
+  MotionSession session(rig_, board_, clock_, stop());
+  const auto moved = move(session);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().kind, Kind::pressure);
+  EXPECT_NE(moved.error().text.find("the pressure monitor of `left` shows"), std::string::npos)
+      << moved.error().text;
+  EXPECT_NE(moved.error().text.find("Either the points of the valve or the points of the pressure monitor"),
+            std::string::npos)
+      << moved.error().text;
+  EXPECT_LT(board_.outputs_kpa[0] * board_.monitor_gain, 72);
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+}
+
+TEST_F(MotionSessionTest, AShortOvershootOfThePressureDoesNotEndTheMotion) {
+  const Nanoseconds begin = clock_.now();
+  board_.on_exchange = [&] {
+    const bool overshoots = clock_.now() > begin + 2 * ns_per_s && clock_.now() < begin + 2050 * ms;
+    board_.monitor_gain = overshoots ? 10 : 1;
+  };
+  MotionSession session(rig_, board_, clock_, stop());
+  EXPECT_TRUE(move(session));
+}
+
+TEST_F(MotionSessionTest, ThePressureIsNotJudgedBeforeAMotion) {
+  board_.monitor_offset_kpa = 100;
+  MotionSession session(rig_, board_, clock_, stop());
+  ASSERT_TRUE(session.connect());
+  EXPECT_TRUE(session.sample(1));
+}
+
+/// Tests that a session leaves in time if the board disappears and each attempt to connect takes 2 s.
+class LeavingTest : public MotionSessionTest {
+ protected:
+  LeavingTest() {
+    board_.connect_takes = 2 * ns_per_s;
+    board_.how = BusStatus::disconnected;
+    rig_.reconnect.connect_deadline = std::chrono::seconds(2);
+    rig_.settings.rate_hz = 40;
+    rig_.settings.faults.bus_down_cycles = 5;
+    for (control::ChannelSettings& channel : rig_.settings.channels) channel.limits.slew_down_kpa_per_s = 5;
+  }
+  /// Raises the pressure and leaves after the board has disappeared. The board returns after `gone`. Returns
+  /// the duration of leave() [s].
+  double leave(Nanoseconds gone = 3600 * ns_per_s) {
+    MotionSession session(rig_, board_, clock_, stop());
+    EXPECT_TRUE(session.connect());
+    EXPECT_TRUE(session.ramp(0, pressure_kpa, speed_kpa_per_s));
+    const Nanoseconds begin = clock_.now();
+    board_.lost_from = begin;
+    board_.lost_until = begin + gone;
+    confirmed_ = session.leave([&](const std::string& why) {
+      ++told_;
+      told_after_s_ = seconds(clock_.now() - begin);
+      EXPECT_EQ(why, "scripted");
+    });
+    return seconds(clock_.now() - begin);
+  }
+
+  bool confirmed_ = true;
+  int told_ = 0;
+  double told_after_s_ = 0;
+};
+
+TEST_F(LeavingTest, TheRampFollowsTheTimeWhileTheBoardIsGone) {
+  board_.watchdog_ns = 0;
+  constexpr double ramp_s = pressure_kpa / 5;
+  EXPECT_LT(leave(), ramp_s + 1 + 2 + 0.2) << "ramp, confirmation and one attempt to connect";
+  EXPECT_FALSE(confirmed_);
+  EXPECT_EQ(told_, 1);
+  EXPECT_LT(told_after_s_, 2.2) << "the report follows the first failed attempt to connect";
+}
+
+TEST_F(LeavingTest, ABoardThatReturnsReceivesTheRestPressure) {
+  board_.watchdog_ns = 0;
+  EXPECT_LT(leave(3 * ns_per_s), 6.5);
+  EXPECT_TRUE(confirmed_);
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+}
+
+TEST_F(LeavingTest, TheRestPressuresFollowAtOnceAfterTheWatchdogTime) {
+  EXPECT_LT(leave(), 0.5 + 1 + 2 * 2 + 0.2) << "without the watchdog, the ramp alone takes 6 s";
+  EXPECT_FALSE(confirmed_);
+  EXPECT_EQ(told_, 1);
+}
+
+/// Tests rigs with an emergency stop and an enable output.
+class MotionLinesTest : public MotionSessionTest {
+ protected:
+  MotionLinesTest() {
+    rig_.gpio.emplace();
+    rig_.gpio->lines.resize(2);
+    rig_.gpio->lines[0].role = GpioRole::emergency_stop;
+    rig_.gpio->lines[1].role = GpioRole::enable;
+  }
+  using GpioRole = drivers::GpioRole;
+
+  daemon::testing::Terminals terminals_;
+  std::unique_ptr<drivers::GpioLines> lines_ = terminals_.lines();
+};
+
+TEST_F(MotionLinesTest, AnEmergencyStopDuringARampWritesTheRestPressureAtOnce) {
+  const Nanoseconds pressed_at = clock_.now() + 1500 * ms;
+  int exchanges = 0;
+  board_.on_exchange = [&] {
+    ++exchanges;
+    if (clock_.now() >= pressed_at) terminals_.set(GpioRole::emergency_stop, true);
+  };
+  MotionSession session(rig_, board_, clock_, stop(), lines_.get());
+  const auto moved = move(session);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().kind, Kind::emergency_stop);
+  EXPECT_NE(moved.error().text.find("the emergency stop is pressed"), std::string::npos);
+  EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "an emergency stop switches the enable output off";
+  EXPECT_GT(board_.outputs_kpa[0], 10) << "the command had begun to rise before the emergency stop";
+  exchanges = 0;
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+  EXPECT_EQ(exchanges, 1) << "an emergency stop does not ramp the pressure down";
+}
+
+TEST_F(MotionLinesTest, AnEmergencyStopDuringTheReturnWritesTheRestPressureAtOnce) {
+  for (control::ChannelSettings& channel : rig_.settings.channels) channel.limits.slew_down_kpa_per_s = 5;
+  MotionSession session(rig_, board_, clock_, stop(), lines_.get());
+  ASSERT_TRUE(session.connect());
+  ASSERT_TRUE(session.ramp(0, pressure_kpa, speed_kpa_per_s));
+  terminals_.set(GpioRole::emergency_stop, true);
+  const Nanoseconds begin = clock_.now();
+  EXPECT_TRUE(session.leave());
+  EXPECT_LT(clock_.now() - begin, 100 * ms);
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+}
+
+TEST_F(MotionLinesTest, NothingMovesIfTheEmergencyStopIsPressedOrCannotBeRead) {
+  const auto refusal = [&](drivers::GpioLines* lines) {
+    MotionSession session(rig_, board_, clock_, stop(), lines);
+    EXPECT_TRUE(session.connect());
+    EXPECT_TRUE(session.sample(0.1)) << "the sensors can be read";
+    const auto moved = session.ramp(0, pressure_kpa, speed_kpa_per_s);
+    EXPECT_FALSE(moved);
+    EXPECT_EQ(moved.error().kind, Kind::emergency_stop);
+    EXPECT_TRUE(session.leave());
+    return moved.error().text;
+  };
+  terminals_.set(GpioRole::emergency_stop, true);
+  EXPECT_NE(refusal(lines_.get()).find("is pressed"), std::string::npos);
+  terminals_.set(GpioRole::emergency_stop, false);
+  EXPECT_NE(refusal(nullptr).find("cannot be read"), std::string::npos);
+  terminals_.fail();
+  EXPECT_NE(refusal(lines_.get()).find("cannot be read"), std::string::npos);
+  rig_.gpio->lines.erase(rig_.gpio->lines.begin());
+  EXPECT_NE(refusal(lines_.get()).find("the enable output cannot be switched on"), std::string::npos);
+  EXPECT_EQ(board_.largest_rise_kpa, 0);
+}
+
+TEST_F(MotionLinesTest, TheEnableOutputIsOnFromTheFirstRampUntilTheSessionIsLeft) {
+  MotionSession session(rig_, board_, clock_, stop(), lines_.get());
+  ASSERT_TRUE(session.connect());
+  ASSERT_TRUE(session.sample(0.1));
+  EXPECT_FALSE(terminals_.level(GpioRole::enable));
+  bool enabled_with_pressure = true;
+  board_.on_exchange = [&] {
+    if (board_.outputs_kpa[0] > 0) enabled_with_pressure &= terminals_.level(GpioRole::enable);
+  };
+  ASSERT_TRUE(session.ramp(0, pressure_kpa, speed_kpa_per_s));
+  EXPECT_TRUE(session.leave());
+  EXPECT_TRUE(enabled_with_pressure);
+  EXPECT_FALSE(terminals_.level(GpioRole::enable));
 }
 
 TEST_F(MotionSessionTest, AStopByTheUserEndsTheMotionAtTheRestPressure) {

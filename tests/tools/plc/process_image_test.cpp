@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace softgrip::plc::process_image_test {
 namespace {
@@ -112,6 +116,24 @@ TEST(Writes, FindsTheRegistersThatARequestWrites) {
   EXPECT_FALSE(writes(both, 100));
   EXPECT_FALSE(writes(modbus::Bytes{3, 0, 5, 0, 1}, 5));
   EXPECT_FALSE(writes(modbus::Bytes{6}, 0));
+}
+
+/// The daemon compares the value with the limits of the sequence. Therefore, the value must be equal to the
+/// decimal number that a sequence file contains.
+TEST_F(ProcessImage, ARegisterValueEqualsItsDecimalNumber) {
+  Command command;
+  command.code = static_cast<std::uint16_t>(CommandCode::start);
+  command.recipe = settings_.recipes[0].number;
+  for (const auto& [resolution, decimals] : {std::pair{0.1, 1}, {0.01, 2}, {0.001, 3}, {0.5, 1}, {1.0, 0}}) {
+    settings_.registers.resolution[static_cast<std::size_t>(Name::squeeze)] = resolution;
+    for (int counts = 1; counts <= 32767; ++counts) {
+      command.squeeze = static_cast<std::uint16_t>(counts);
+      const auto request = request_of(settings_, command);
+      ASSERT_TRUE(request);
+      const std::string text = fmt::format("{:.{}f}", counts * resolution, decimals);
+      ASSERT_EQ(request->at("parameters").at("squeeze_kpa").get<double>(), std::stod(text)) << text;
+    }
+  }
 }
 
 }  // namespace
