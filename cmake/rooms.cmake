@@ -76,10 +76,10 @@ softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohman
 # These libraries are linked PRIVATE, so other rooms are not compiled with their headers.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
 softgrip_room(sysid/pages USES base base/result model model/file sysid/logs)
-softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
+softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/identification
   USES base base/result document model model/file sysid/limits sysid/logs sysid/pages sysid/fitting
-  LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
+  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/evidence USES base sysid/limits sysid/logs sysid/fitting)
 softgrip_room(sysid/structure
   USES base model sysid/limits sysid/logs sysid/fitting sysid/identification sysid/evidence

@@ -1,8 +1,16 @@
 #include "sysid/fitting/descent.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 namespace softgrip::sysid {
+namespace {
+
+constexpr double fixed_factor = 6;
+constexpr double weakest_damping = 1e-10;
+
+}  // namespace
 
 Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bounds, double damping,
                             const DescentOptions& options) {
@@ -26,6 +34,27 @@ Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bou
       .cwiseMin(options.longest_step)
       .cwiseMax(bounds.lower)
       .cwiseMin(bounds.upper);
+}
+
+void Damping::fail() {
+  if (rule_ == DampingRule::fixed_factor) {
+    now_ *= fixed_factor;
+    return;
+  }
+  now_ *= more_;
+  more_ *= 2;
+}
+
+void Damping::succeed(const NormalEquations& normal, const Eigen::VectorXd& step, double gain) {
+  double factor = 1 / fixed_factor;
+  if (rule_ == DampingRule::gain_ratio) {
+    // `normal` belongs to half the loss.
+    const double predicted = -2 * normal.gradient.dot(step) - step.dot(normal.curvature * step);
+    const double excess = predicted > 0 ? 2 * gain / predicted - 1 : 0;
+    factor = std::max(1.0 / 3, 1 - excess * excess * excess);
+  }
+  now_ = std::max(now_ * factor, weakest_damping);
+  more_ = 2;
 }
 
 }  // namespace softgrip::sysid

@@ -1,74 +1,107 @@
-// This is the only file that includes the solver of Ceres.
-
 #include "sysid/fitting/minimise.h"
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
-#include <numeric>
+#include <limits>
+#include <utility>
 
-#include <ceres/ceres.h>
-#include <glog/logging.h>
+#include <Eigen/Core>
 
-#include "base/thread_budget.h"
+#include "sysid/fitting/descent.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Switches off the log messages of Ceres, which uses glog. The summary of the solver contains the relevant
-/// information.
-void quieten_log() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    FLAGS_minloglevel = google::GLOG_FATAL;
-    if (!google::IsGoogleLoggingInitialized()) google::InitGoogleLogging("softgrip");
-  });
-}
+/// Damping of the first trial step, as a share of the curvature.
+constexpr double first_damping = 1e-3;
+/// Step of a central difference, as a share of the parameter, and its smallest value.
+constexpr double relative_difference = 1e-6, least_difference = 1.5e-8;
 
-/// Cost function of Ceres that contains all residuals. Ceres would apply Huber's loss to the sum of squares
-/// of all residuals. Therefore this class applies Huber's loss to each residual. For |r| > d, the residual is
-/// replaced by f = sign(r) sqrt(2 d |r| - d^2), whose square is Huber's cost.
-class WholeTrajectory final : public ceres::CostFunction {
+/// Point of a descent, with the sum of squares at this point. Infinity: the model is not defined there.
+struct LeastSquaresPoint {
+  std::vector<double> z;
+  double sum_of_squares = 0;
+};
+
+/// Least squares for descend(). `Values(z, r)` computes the residuals and returns false if they are not
+/// defined. `Derivatives(z, r, jacobian)` computes the residuals and their derivatives.
+template <class Values, class Derivatives>
+class LeastSquares {
  public:
-  WholeTrajectory(const Residuals& residuals, double huber_mm) : residuals_(residuals), huber_mm_(huber_mm) {
-    set_num_residuals(static_cast<int>(residuals.count()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(residuals.space().size()));
+  LeastSquares(Values values, Derivatives derivatives, std::size_t count, std::vector<double> lower,
+               std::vector<double> upper)
+      : values_(std::move(values)),
+        derivatives_(std::move(derivatives)),
+        r_(count),
+        jacobian_(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(lower.size())),
+        lower_(std::move(lower)),
+        upper_(std::move(upper)) {}
+
+  [[nodiscard]] LeastSquaresPoint at(std::vector<double> z) {
+    const bool defined = values_(z, std::span(r_));
+    const double sum = Eigen::Map<const Eigen::VectorXd>(r_.data(), rows()).squaredNorm();
+    return {std::move(z), defined && std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity()};
   }
 
-  bool Evaluate(double const* const* parameters, double* r, double** jacobians) const override {
-    if (is_cancelled()) return false;  // Ceres does not permit exceptions in this function
-    const std::size_t rows = residuals_.count();
-    const std::size_t columns = residuals_.space().size();
-    const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
-    const std::span<double> jacobian(wanted ? jacobians[0] : nullptr, wanted ? rows * columns : 0);
-    if (!residuals_.evaluate({parameters[0], columns}, {r, rows}, jacobian)) return false;
-    if (!std::isfinite(huber_mm_)) return true;
-    for (std::size_t i = 0; i < rows; ++i) {
-      const double size = std::abs(r[i]);
-      if (size <= huber_mm_) continue;
-      const double root = std::sqrt(2 * huber_mm_ * size - huber_mm_ * huber_mm_);
-      for (std::size_t c = 0; c < columns && wanted; ++c) jacobian[i * columns + c] *= huber_mm_ / root;
-      r[i] = std::copysign(root, r[i]);
-    }
-    return true;
+  [[nodiscard]] static double loss(const LeastSquaresPoint& point) { return point.sum_of_squares; }
+
+  [[nodiscard]] NormalEquations normal(const LeastSquaresPoint& point) {
+    const Eigen::Index n = columns();
+    is_defined_ = derivatives_(point.z, std::span(r_), jacobian());
+    if (!is_defined_) return {Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Identity(n, n)};
+    const Eigen::Map<const Eigen::VectorXd> r(r_.data(), rows());
+    Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
+    curvature.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
+    curvature.triangularView<Eigen::StrictlyUpper>() = curvature.transpose();
+    return {jacobian_.transpose() * r, std::move(curvature)};
   }
+
+  [[nodiscard]] StepBounds bounds(const LeastSquaresPoint& point) const {
+    const Eigen::Map<const Eigen::VectorXd> z(point.z.data(), columns()), lower(lower_.data(), columns()),
+        upper(upper_.data(), columns());
+    return {lower - z, upper - z};
+  }
+
+  [[nodiscard]] LeastSquaresPoint moved(const LeastSquaresPoint& from, const Eigen::VectorXd& step) {
+    std::vector<double> z = from.z;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      z[i] = std::clamp(z[i] + step(static_cast<Eigen::Index>(i)), lower_[i], upper_[i]);
+    }
+    return at(std::move(z));
+  }
+
+  /// Returns true if the derivatives could be computed at the last point.
+  [[nodiscard]] bool is_defined() const { return is_defined_; }
 
  private:
-  const Residuals& residuals_;
-  double huber_mm_;
-};
-
-struct PlainFunctor {
-  const PlainResiduals& residuals;
-  std::size_t numbers;
-  std::size_t count;
-
-  bool operator()(double const* const* parameters, double* r) const {
-    if (is_cancelled()) return false;
-    residuals({parameters[0], numbers}, {r, count});
-    return true;
+  [[nodiscard]] Eigen::Index rows() const { return jacobian_.rows(); }
+  [[nodiscard]] Eigen::Index columns() const { return jacobian_.cols(); }
+  [[nodiscard]] std::span<double> jacobian() {
+    return {jacobian_.data(), static_cast<std::size_t>(jacobian_.size())};
   }
+
+  Values values_;
+  Derivatives derivatives_;
+  std::vector<double> r_;
+  Jacobian jacobian_;
+  std::vector<double> lower_, upper_;
+  bool is_defined_ = true;
 };
+
+/// Replaces each residual by the residual whose square is Huber's cost: f = sign(r) sqrt(2 d |r| - d^2) for
+/// |r| > d. Converts the rows of the Jacobian accordingly.
+/// @param jacobian  may be empty.
+void apply_huber(double huber_mm, std::span<double> r, std::span<double> jacobian) {
+  if (!std::isfinite(huber_mm)) return;
+  const std::size_t columns = jacobian.size() / std::max<std::size_t>(r.size(), 1);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const double size = std::abs(r[i]);
+    if (size <= huber_mm) continue;
+    const double root = std::sqrt(2 * huber_mm * size - huber_mm * huber_mm);
+    for (double& slope : jacobian.subspan(i * columns, columns)) slope *= huber_mm / root;
+    r[i] = std::copysign(root, r[i]);
+  }
+}
 
 double rmse(const Residuals& residuals, const std::vector<double>& z) {
   std::vector<double> r(residuals.count());
@@ -78,10 +111,18 @@ double rmse(const Residuals& residuals, const std::vector<double>& z) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(r.size(), 1)));
 }
 
+DescentOptions options_for(int most_iterations, double tolerance) {
+  return {.most_steps = most_iterations,
+          .most_evaluations = most_iterations,
+          .damping = first_damping,
+          .rule = DampingRule::gain_ratio,
+          .longest_step = std::numeric_limits<double>::infinity(),
+          .least_share = tolerance};
+}
+
 }  // namespace
 
 Minimum minimise(const Residuals& residuals, std::vector<double> z, const MinimiseOptions& options) {
-  quieten_log();
   const std::vector<FreeParameter>& free = residuals.space().free();
   Minimum minimum;
   if (free.empty()) {
@@ -89,70 +130,64 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
     minimum.converged = true;
     return minimum;
   }
-  ceres::Problem problem;
-  problem.AddResidualBlock(new WholeTrajectory(residuals, options.huber_mm), nullptr, z.data());
+  std::vector<double> lower, upper;
   for (std::size_t i = 0; i < free.size(); ++i) {
     z[i] = std::clamp(z[i], free[i].lower_z(), free[i].upper_z());
-    problem.SetParameterLowerBound(z.data(), static_cast<int>(i), free[i].lower_z());
-    problem.SetParameterUpperBound(z.data(), static_cast<int>(i), free[i].upper_z());
+    const bool held = options.held == i;
+    lower.push_back(held ? z[i] : free[i].lower_z());
+    upper.push_back(held ? z[i] : free[i].upper_z());
   }
-  if (options.held && z.size() == 1) {
-    problem.SetParameterBlockConstant(z.data());
-  } else if (options.held) {
-    problem.SetManifold(
-        z.data(), new ceres::SubsetManifold(static_cast<int>(z.size()), {static_cast<int>(*options.held)}));
-  }
-  ceres::Solver::Options solver;
-  solver.logging_type = ceres::SILENT;
-  solver.linear_solver_type = options.normal_equations ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
-  solver.num_threads = 1;
-  solver.max_num_iterations = options.most_iterations;
-  solver.function_tolerance = options.tolerance;
-  solver.parameter_tolerance = 1e-10;
-  solver.gradient_tolerance = 0;
-  solver.initial_trust_region_radius = 1e3;
-  // If there are bounds, Ceres by default searches along each step and computes the derivatives at each trial
-  // point. This line search is switched off here, because Ceres limits the steps to the bounds even without a
-  // line search.
-  solver.max_num_line_search_step_size_iterations = 0;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  end_if_cancelled();
-  minimum.cost = summary.final_cost;
-  minimum.iterations = static_cast<int>(summary.iterations.size());
-  minimum.converged = summary.termination_type == ceres::CONVERGENCE;
+  const auto values = [&](std::span<const double> at, std::span<double> r) {
+    if (!residuals.evaluate(at, r, {})) return false;
+    apply_huber(options.huber_mm, r, {});
+    return true;
+  };
+  const auto derivatives = [&](std::span<const double> at, std::span<double> r, std::span<double> jacobian) {
+    if (!residuals.evaluate(at, r, jacobian)) return false;
+    apply_huber(options.huber_mm, r, jacobian);
+    return true;
+  };
+  LeastSquares problem(values, derivatives, residuals.count(), std::move(lower), std::move(upper));
+  auto end =
+      descend(problem, problem.at(std::move(z)), options_for(options.most_iterations, options.tolerance));
+  minimum.z = std::move(end.point.z);
+  minimum.cost = end.point.sum_of_squares / 2;
+  minimum.iterations = end.steps;
+  minimum.converged = end.converged && problem.is_defined();
   minimum.rmse_mm = std::isfinite(options.huber_mm)
-                        ? rmse(residuals, z)
-                        : std::sqrt(2 * summary.final_cost / static_cast<double>(residuals.count()));
-  minimum.z = std::move(z);
+                        ? rmse(residuals, minimum.z)
+                        : std::sqrt(2 * minimum.cost / static_cast<double>(residuals.count()));
   return minimum;
 }
 
 PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, std::vector<double> start,
                             double tolerance) {
-  if (start.empty()) {
-    std::vector<double> r(count);
-    residuals({}, r);
-    return {{}, std::inner_product(r.begin(), r.end(), r.begin(), 0.0)};
-  }
-  quieten_log();
-  auto* cost = new ceres::DynamicNumericDiffCostFunction<PlainFunctor, ceres::CENTRAL>(
-      new PlainFunctor{residuals, start.size(), count});
-  cost->AddParameterBlock(static_cast<int>(start.size()));
-  cost->SetNumResiduals(static_cast<int>(count));
-  ceres::Problem problem;
-  problem.AddResidualBlock(cost, nullptr, start.data());
-  ceres::Solver::Options solver;
-  solver.logging_type = ceres::SILENT;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;
-  solver.max_num_iterations = 100;
-  solver.function_tolerance = tolerance;
-  solver.gradient_tolerance = 0;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  end_if_cancelled();
-  return {std::move(start), 2 * summary.final_cost};
+  const auto values = [&](std::span<const double> p, std::span<double> r) {
+    residuals(p, r);
+    return true;
+  };
+  std::vector<double> higher(count), lesser(count);
+  const auto derivatives = [&](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {
+    residuals(p, r);
+    std::vector<double> shifted(p.begin(), p.end());
+    for (std::size_t c = 0; c < p.size(); ++c) {
+      const double step = std::max(relative_difference * std::abs(p[c]), least_difference);
+      shifted[c] = p[c] + step;
+      residuals(shifted, higher);
+      shifted[c] = p[c] - step;
+      residuals(shifted, lesser);
+      shifted[c] = p[c];
+      for (std::size_t i = 0; i < count; ++i)
+        jacobian[i * p.size() + c] = (higher[i] - lesser[i]) / (2 * step);
+    }
+    return std::ranges::all_of(jacobian, [](double slope) { return std::isfinite(slope); });
+  };
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
+  LeastSquares problem(values, derivatives, count, std::vector<double>(start.size(), -unbounded),
+                       std::vector<double>(start.size(), unbounded));
+  constexpr int most_iterations = 100;
+  auto end = descend(problem, problem.at(std::move(start)), options_for(most_iterations, tolerance));
+  return {std::move(end.point.z), end.point.sum_of_squares};
 }
 
 }  // namespace softgrip::sysid

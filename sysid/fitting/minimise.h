@@ -1,5 +1,6 @@
 #pragma once
-// Solves least-squares problems with bounds from a given start point by the trust-region method of Ceres.
+// Solves least-squares problems with bounds from a given start point by damped Gauss-Newton steps
+// (descent.h).
 
 #include <cstddef>
 #include <functional>
@@ -13,16 +14,12 @@
 namespace softgrip::sysid {
 
 struct MinimiseOptions {
-  int most_iterations = 60;
+  int most_iterations = 60;  ///< maximum number of trial steps
   /// Limit of a residual above which its cost is linear instead of quadratic (Huber). Infinity: all costs are
   /// quadratic.
   double huber_mm = std::numeric_limits<double>::infinity();
   /// Index of a parameter that is held constant; empty: none.
   std::optional<std::size_t> held;
-  /// True: use normal equations instead of an orthogonal factorisation. The normal equations are solved
-  /// several times faster, but their solution has only half as many correct digits. This accuracy is
-  /// sufficient if only the error of the fit is used.
-  bool normal_equations = false;
   /// The search ends when a step changes the cost by less than this share of the cost.
   double tolerance = 1e-10;
 };
@@ -31,7 +28,7 @@ struct Minimum {
   std::vector<double> z;
   double rmse_mm = 0;  ///< RMSE of the residuals, without Huber's loss
   double cost = 0;     ///< half the sum of squared residuals, or half the sum of Huber's loss
-  int iterations = 0;
+  int iterations = 0;  ///< number of steps that reduced the cost
   bool converged = false;
 };
 

@@ -125,7 +125,6 @@ class Run {
     const auto residuals = residuals_for(result_.records, FitSpace(from.model, result_.records, free.flat));
     std::vector<double> z = residuals->space().z(from);
     MinimiseOptions options;
-    options.normal_equations = true;
     Minimum minimum = minimise(*residuals, z, options);
     // The width of Huber's loss depends on the residuals of the fit, and the fit depends on this width. Two
     // iterations are sufficient.

@@ -50,7 +50,6 @@ PublishedElement fit_published(const std::vector<Record>& records, Drive drive, 
                        [](const SearchResult& a, const SearchResult& b) { return a.rmse_mm < b.rmse_mm; });
   const auto residuals = residuals_for(records, space);
   MinimiseOptions options;
-  options.normal_equations = true;
   const Minimum minimum = minimise(*residuals, space.z(lowest->point), options);
   best.point = space.point(minimum.z);
   best.rmse_mm = minimum.rmse_mm;
@@ -62,7 +61,6 @@ PublishedElement fit_published(const std::vector<Record>& records, Drive drive, 
 FitPoint refit_published(const std::vector<Record>& records, const FitPoint& from) {
   const FitSpace space(from.model, records, free_numbers(from.model));
   MinimiseOptions options;
-  options.normal_equations = true;
   options.most_iterations = 20;
   options.tolerance = 1e-7;
   const auto residuals = residuals_for(records, space);

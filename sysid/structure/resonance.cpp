@@ -78,7 +78,6 @@ ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records, 
   FitSpace space(from.model, records, all ? free_numbers(from.model) : latencies(from.model));
   if (!all) space.hold_starts(from.starts);
   MinimiseOptions options;
-  options.normal_equations = true;
   options.most_iterations = 20;
   options.tolerance = 1e-6;
   const auto residuals = residuals_for(records, space);

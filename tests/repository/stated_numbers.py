@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Checks that numbers and names in documents agree with the sources. Checks the stated numbers of threads, fingers and
-simulated test cases, and the files that include Ceres according to the documents. The figures of README.md must be on
-the pages to which README.md links."""
+simulated test cases. The figures of README.md must be on the pages to which README.md links."""
 
 import re
 import sys
@@ -64,13 +63,6 @@ def worlds():
         yield f"diagnosis-steps.md does not say: {says}"
 
 
-def includes_of_ceres():
-    files = [name for name in sources("") if "#include <ceres/" in text(name) and not name.startswith("tests/")]
-    row = next(line for line in text("docs/explanation/libraries.md").splitlines() if line.startswith("| Ceres |"))
-    if len(files) != 1 or f"Only `{files[0]}` includes Ceres" not in row:
-        yield f"libraries.md: Ceres is included by {', '.join(files)}"
-
-
 def front_page():
     """Checks the figures of README.md. Each version hash, count and comparison must be on a page to which the table
     row or sentence of the figure links."""
@@ -83,7 +75,7 @@ def front_page():
 
 
 def main():
-    wrong = [sentence for part in (threads, fingers, worlds, includes_of_ceres, front_page) for sentence in part()]
+    wrong = [sentence for part in (threads, fingers, worlds, front_page) for sentence in part()]
     print("\n".join(wrong) or "the stated numbers are those of the sources")
     return 1 if wrong else 0
 

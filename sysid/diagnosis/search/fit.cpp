@@ -9,6 +9,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/each_record.h"
 
 namespace softgrip::sysid {
@@ -91,8 +92,8 @@ StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause
   const auto residuals = residuals_for(records, space);
   MinimiseOptions options;
   options.most_iterations = effort.most_iterations;
-  options.tolerance = effort.tolerance;
-  options.normal_equations = true;
+  options.tolerance =
+      std::max(effort.tolerance, limits::negligible_share / static_cast<double>(residuals->count()));
   const Minimum minimum = minimise(*residuals, space.z(from), options);
   StructureFit fit = evaluate_structure(records, std::move(causes), space.point(minimum.z));
   fit.free_parameters = space.size();

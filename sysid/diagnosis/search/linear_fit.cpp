@@ -46,7 +46,6 @@ LinearFit linear_fit_from(const std::vector<Record>& records, const Scan& base, 
   const FitSpace numbers = cause_space(records, start, cause);
   const ResidualsBesideBase residuals(base, records, numbers);
   MinimiseOptions options;
-  options.normal_equations = true;
   options.most_iterations = look_iterations;
   options.tolerance = 1e-5;
   const Minimum minimum = minimise(residuals, numbers.z(start), options);

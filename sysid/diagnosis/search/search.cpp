@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/limits/limits.h"
@@ -30,12 +31,35 @@ constexpr double worth_a_look = 1.5;
 constexpr double near_enough = 1.4;
 constexpr double next_to_best = 1.05;
 
+/// Returns true if the predictions of two fits of a structure differ by less than a negligible share of the
+/// error. The fits then have reached the same minimum from different start points.
+bool are_equal(const StructureFit& a, const StructureFit& b) {
+  double sum_mm2 = 0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < a.residual_mm.size(); ++k) {
+    for (std::size_t i = 0; i < a.residual_mm[k].size(); ++i) {
+      const double difference_mm = a.residual_mm[k][i] - b.residual_mm[k][i];
+      if (std::isnan(difference_mm)) continue;
+      sum_mm2 += square(difference_mm);
+      ++count;
+    }
+  }
+  return sum_mm2 <= square(limits::negligible_share) * static_cast<double>(count) * a.mean_square_mm2;
+}
+
+/// Sorts the fits by their mean square. Keeps the best `count` fits, and of equal fits only the best one.
 void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   std::erase_if(fits, [](const StructureFit& fit) { return !std::isfinite(fit.mean_square_mm2); });
   std::stable_sort(fits.begin(), fits.end(), [](const StructureFit& a, const StructureFit& b) {
     return a.mean_square_mm2 < b.mean_square_mm2;
   });
-  if (fits.size() > count) fits.resize(count);
+  std::vector<StructureFit> kept;
+  for (StructureFit& fit : fits) {
+    if (kept.size() < count &&
+        std::ranges::none_of(kept, [&](const StructureFit& better) { return are_equal(better, fit); }))
+      kept.push_back(std::move(fit));
+  }
+  fits = std::move(kept);
 }
 
 /// Returns one scan for each point at which the search for a further cause may start.

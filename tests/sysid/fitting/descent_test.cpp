@@ -44,6 +44,26 @@ TEST(Descent, FindsTheMinimumOfRosenbrocksValley) {
   EXPECT_NEAR(end.point(1), 1, 1e-8);
 }
 
+/// Where the Gauss-Newton model is exact, the damping decreases to a third. If a step gains half of the
+/// predicted gain, the damping stays. Failures in a row increase it faster and faster.
+TEST(Descent, TheDampingFollowsTheGainRatio) {
+  const DescentOptions options{.damping = 0.9, .rule = DampingRule::gain_ratio};
+  const NormalEquations normal{Eigen::Vector2d(-1, 0), Eigen::Matrix2d::Identity()};
+  const Eigen::Vector2d step(1, 0);  // predicted gain of the loss: 2 - 1
+  Damping exact(options);
+  exact.succeed(normal, step, 1);
+  EXPECT_DOUBLE_EQ(exact.now(), 0.3);
+  Damping half(options);
+  half.succeed(normal, step, 0.5);
+  EXPECT_DOUBLE_EQ(half.now(), 0.9);
+  half.fail();
+  half.fail();
+  EXPECT_DOUBLE_EQ(half.now(), 0.9 * 2 * 4);
+  half.succeed(normal, step, 0.5);
+  half.fail();
+  EXPECT_DOUBLE_EQ(half.now(), 0.9 * 2 * 4 * 2);
+}
+
 TEST(Descent, StaysWithinBoundsAndMovesAlongThem) {
   // With the bound y <= 0.25, the minimum is at the x for which 400 x^3 - 98 x - 2 = 0. This x is close to
   // 0.5.
