@@ -13,7 +13,7 @@ import terminal
 
 STONE = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
 SHORT = ("--experiments", "minor_loops", "sharp_steps")
-ENDS_WITHIN_S = 170
+ENDS_WITHIN_S = 340
 
 
 class Baseline(bench.BenchTest):
