@@ -1,6 +1,7 @@
 #include "library/include/softgrip/board.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/clock.h"
@@ -89,7 +90,8 @@ SimulatedBoard::SimulatedBoard(std::vector<SimulatedFinger> fingers, double tick
   if (fingers.empty() || fingers.size() > most_fingers)
     throw InvalidArgument("fingers", std::to_string(fingers.size()) + " fingers; 1 to " +
                                          std::to_string(most_fingers) + " are possible");
-  library::require_positive("tick_s", tick_s, "s");
+  library::require_between("tick_s", tick_s, library::shortest_simulated_step_s,
+                           std::numeric_limits<double>::max(), "s");
   simulation::SimulatedBoardSettings settings;
   for (std::size_t i = 0; i < fingers.size(); ++i) {
     const SimulatedFinger& finger = fingers[i];

@@ -1,6 +1,7 @@
 #include "library/include/softgrip/control.h"
 
 #include <cmath>
+#include <limits>
 
 #include "control/elements/limits.h"
 #include "control/elements/pid.h"
@@ -165,9 +166,13 @@ double Reference::end_s() const noexcept {
 
 struct Feedforward::Parts {
   control::RunningModel running;
+  control::Feedforward at_rest;  ///< the feedforward before its first step
   control::Feedforward feedforward;
+  FeedforwardKind kind = FeedforwardKind::none;
+  control::LimitSettings limits;
   double tick_s = 0;
   double time_s = 0;
+  double last_kpa = 0;  ///< result of the last step
 
   /// Returns a reference that has the value `ahead` at all times.
   [[nodiscard]] control::Reference reference(double ahead) const noexcept {
@@ -184,9 +189,14 @@ Feedforward::Feedforward(const Model& model, const Limits& limits, double tick_s
   library::require_between("extra_latency_s", extra_latency_s, 0, 1, "s");
   const control::FeedforwardSettings feedforward{kind_of(kind), extra_latency_s};
   require_usable(model, feedforward, settings, tick_s);
+  const control::Feedforward at_rest(model.parts().value, feedforward, settings, tick_s);
   parts_ = std::make_unique<Parts>(
-      Parts{control::RunningModel(model.parts().value, tick_s, extra_latency_s, tick_s),
-            control::Feedforward(model.parts().value, feedforward, settings, tick_s), tick_s});
+      Parts{.running = control::RunningModel(model.parts().value, tick_s, extra_latency_s, tick_s),
+            .at_rest = at_rest,
+            .feedforward = at_rest,
+            .kind = kind,
+            .limits = settings,
+            .tick_s = tick_s});
   start(control::resting_kpa(settings), 0);
 }
 Feedforward::~Feedforward() = default;
@@ -198,17 +208,24 @@ double Feedforward::preview_s() const noexcept {
 }
 
 void Feedforward::start(double command_kpa, double reference_ahead) noexcept {
-  parts_->running.reset(command_kpa);
-  parts_->time_s = 0;
-  const control::Reference reference = parts_->reference(reference_ahead);
-  parts_->feedforward.enter(parts_->running, {.reference = &reference, .time_s = 0}, command_kpa);
+  if (!std::isfinite(command_kpa) || !std::isfinite(reference_ahead)) return;
+  Parts& parts = *parts_;
+  parts.running.reset(command_kpa);
+  parts.feedforward = parts.at_rest;
+  parts.time_s = 0;
+  parts.last_kpa = parts.kind == FeedforwardKind::none ? 0 : control::in_range(parts.limits, command_kpa);
+  const control::Reference reference = parts.reference(reference_ahead);
+  parts.feedforward.enter(parts.running, {.reference = &reference, .time_s = 0}, command_kpa);
 }
 
 FeedforwardStep Feedforward::step(double reference_ahead) noexcept {
-  const control::Reference reference = parts_->reference(reference_ahead);
+  Parts& parts = *parts_;
+  if (!std::isfinite(reference_ahead)) return {parts.last_kpa, true};
+  const control::Reference reference = parts.reference(reference_ahead);
   const control::FeedforwardStep step =
-      parts_->feedforward.step({.reference = &reference, .time_s = parts_->time_s});
-  parts_->time_s += parts_->tick_s;
+      parts.feedforward.step({.reference = &reference, .time_s = parts.time_s});
+  parts.time_s += parts.tick_s;
+  parts.last_kpa = step.pressure_kpa;
   return {step.pressure_kpa, step.out_of_reach};
 }
 

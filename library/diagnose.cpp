@@ -31,12 +31,18 @@ Cause public_cause(const sysid::NamedCause& named) {
 }
 
 Cause public_cause(const sysid::ChangeCause& changed) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   Cause cause;
   cause.id = changed.id;
   cause.title = changed.title;
-  cause.error_reduction_percent = unknown;
-  cause.error_reduction_ci95 = {unknown, unknown};
+  if (changed.reduction) {
+    const auto& [share, interval] = *changed.reduction;
+    cause.error_reduction_percent = 100 * share;
+    cause.error_reduction_ci95 = {100 * interval.lower, 100 * interval.upper};
+  } else {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    cause.error_reduction_percent = unknown;
+    cause.error_reduction_ci95 = {unknown, unknown};
+  }
   cause.parameters.push_back({changed.size.what,
                               model::in_unit(changed.size.unit, changed.output_unit),
                               changed.size.value,

@@ -37,6 +37,24 @@ sysid::ShowProgress progress_of(const Progress& progress) {
   };
 }
 
+/// Throws InvalidArgument if the options request a choice of the structure and also contain a setting of a
+/// fit whose structure is given.
+void require_free_choice(const IdentifyOptions& options) {
+  const std::string choice = "the options request a choice of the structure, but also ";
+  if (options.start)
+    throw InvalidArgument("start",
+                          choice + "contain a start model. To fit the start model, use Structure::start");
+  const auto refuse_unless = [&](const char* argument, bool is_default) {
+    if (!is_default)
+      throw InvalidArgument(argument,
+                            choice + "set `" + argument + "`. To use this setting, use Structure::start");
+  };
+  refuse_unless("branches", options.branches == IdentifyOptions{}.branches);
+  refuse_unless("fixed", options.fixed.empty());
+  refuse_unless("free", options.free.empty());
+  refuse_unless("robust", !options.robust);
+}
+
 /// Throws InvalidArgument if the model has no parameter with one of the names.
 void require_parameters(const std::string& argument, const std::vector<std::string>& names,
                         const model::Model& model) {
@@ -81,10 +99,7 @@ std::vector<Prediction> predictions_of(const std::vector<sysid::Record>& records
 Identification identify(const std::vector<Log>& logs, const IdentifyOptions& options) {
   sysid::IdentifyQuestion question;
   question.structure = question_of(options.structure);
-  if (question.structure && options.start)
-    throw InvalidArgument("start",
-                          "the options request a choice of the structure, but also contain a start model. To "
-                          "fit the start model, use Structure::start");
+  if (question.structure) require_free_choice(options);
   library::require_between("branches", static_cast<double>(options.branches), 1, 8, "");
   library::require_between("starts", static_cast<double>(options.starts), 1, 10000, "");
   library::require_between("fit_share", options.fit_share, 0.05, 1, "");

@@ -204,7 +204,9 @@ struct Simulator::Parts {
 };
 
 Simulator::Simulator(const Model& model, double sample_time_s, std::uint64_t seed) {
-  library::require_between("sample_time_s", sample_time_s, 0, std::numeric_limits<double>::max(), "s");
+  if (sample_time_s != 0)
+    library::require_between("sample_time_s", sample_time_s, library::shortest_simulated_step_s,
+                             std::numeric_limits<double>::max(), "s");
   parts_ = std::make_unique<Parts>(Parts{model::Chain<double>(model.parts().value, {}, sample_time_s, seed)});
   parts_->chain.reset(0);
 }

@@ -42,6 +42,10 @@ namespace library {
 /// Returns the sentence for a parameter that a model does not have.
 [[nodiscard]] std::string unknown_parameter(const model::Model& model, const std::string& name);
 
+/// Shortest usual duration of a step of a simulation [s]. The memory of a delay line increases with the delay
+/// divided by this duration.
+inline constexpr double shortest_simulated_step_s = 1e-6;
+
 // Each of the following functions throws InvalidArgument if its requirement is not met.
 /// Requires one value for each of `count` times.
 void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);

@@ -1,9 +1,20 @@
 #!/usr/bin/env bash
 # Installs the required packages, builds, and demonstrates the project on a simulated rig:
 #   scripts/demo.sh [OUTPUT_DIR]      default: demo-output/
+# The output of an earlier demo in OUTPUT_DIR is deleted. Any other folder with content is refused.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
+# Succeeds if $out is the output of a demo. The output of a demo contains a marker file. The output of earlier versions
+# has no marker file, but contains runs/ and pick_stone.svg.
+marker=.softgrip-demo
+is_of_a_demo() { [ -f "$out/$marker" ] || { [ -d "$out/runs" ] && [ -f "$out/pick_stone.svg" ]; }; }
+if [ -e "$out" ] && ! is_of_a_demo; then
+  if [ ! -d "$out" ] || [ -n "$(ls -A "$out")" ]; then
+    echo "demo.sh: $out exists, but is not the output of a demo, and its content would be deleted. Name a new folder." >&2
+    exit 2
+  fi
+fi
 # Updates an existing build. If no build exists, builds the four programs that the demo needs, without debug
 # information.
 build=build/release
@@ -20,7 +31,7 @@ else
 fi
 python3 tests/repository/libraries.py --build "$build" >>"$build/demo.log" || { tail -n 4 "$build/demo.log" >&2; exit 1; }
 
-rm -rf "$out" && mkdir -p "$out/runs"
+rm -rf "$out" && mkdir -p "$out/runs" && touch "$out/$marker"
 work=$(mktemp -d) runs=$out/runs
 . scripts/rig_session.sh
 web_pid=

@@ -1,5 +1,6 @@
 #include "control/elements/reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -111,24 +112,17 @@ double Reference::final_value() const noexcept {
   return last_point().value;
 }
 
-Reference::Segment* Reference::append(Shape shape, double duration_s) noexcept {
-  if (count_ == capacity || !(duration_s >= 0)) return nullptr;
+bool Reference::append(Shape shape, double duration_s, const std::array<double, 6>& c) noexcept {
   const double start_s = end_s();
-  Segment& segment = segments_[count_++];
-  segment = Segment{};
-  segment.shape = shape;
-  segment.start_s = start_s;
-  segment.duration_s = duration_s;
-  return &segment;
+  if (count_ == capacity || !(duration_s >= 0) || !std::isfinite(start_s + duration_s)) return false;
+  if (!std::all_of(c.begin(), c.end(), [](double one) { return std::isfinite(one); })) return false;
+  segments_[count_++] = {.shape = shape, .start_s = start_s, .duration_s = duration_s, .c = c};
+  return true;
 }
 
 bool Reference::ramp_for(double value, double duration_s) noexcept {
   if (!(duration_s > 0)) return false;
-  const ReferencePoint from = last_point();
-  Segment* segment = append(Shape::quintic, duration_s);
-  if (segment == nullptr) return false;
-  segment->c = quintic_to_rest(from, value, duration_s);
-  return true;
+  return append(Shape::quintic, duration_s, quintic_to_rest(last_point(), value, duration_s));
 }
 
 bool Reference::ramp_to(double value, double speed) noexcept {
@@ -138,26 +132,24 @@ bool Reference::ramp_to(double value, double speed) noexcept {
   if (count_ + (moving ? 2U : 1U) > capacity) return false;
   // Appends a ramp that brakes the reference to speed 0 without a reversal. The ramp covers half of the
   // distance that the present speed would cover in brake_s.
+  const std::size_t count_before = count_;
   if (moving && !ramp_for(from.value + from.rate * brake_s / 2, brake_s)) return false;
   const double distance = std::abs(value - final_value());
   if (distance == 0) return moving || hold_for(0);
-  return ramp_for(value, peak_speed_factor * distance / speed);
+  if (ramp_for(value, peak_speed_factor * distance / speed)) return true;
+  count_ = count_before;
+  return false;
 }
 
 bool Reference::hold_for(double duration_s) noexcept {
-  const double value = final_value();
-  Segment* segment = append(Shape::quintic, duration_s);
-  if (segment == nullptr) return false;
-  segment->c[0] = value;
-  return true;
+  return append(Shape::quintic, duration_s, {final_value(), 0, 0, 0, 0, 0});
 }
 
 bool Reference::sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept {
   if (!(frequency_hz > 0) || !(cycles > 0)) return false;
-  Segment* segment = append(Shape::sine, cycles / frequency_hz);
-  if (segment == nullptr) return false;
-  segment->c = {mean, amplitude, 2 * std::numbers::pi * frequency_hz, 0, 0, 0};
-  return true;
+  if (!std::isfinite(std::abs(mean) + std::abs(amplitude))) return false;
+  return append(Shape::sine, cycles / frequency_hz,
+                {mean, amplitude, 2 * std::numbers::pi * frequency_hz, 0, 0, 0});
 }
 
 void Reference::cut(double time_s) noexcept {

@@ -33,7 +33,8 @@ class Reference {
   void start(double time_s, const ReferencePoint& point) noexcept;
 
   // Each of the following functions appends a segment after end_s(). If the list has no space for the
-  // segment, or if an argument is not permitted, the function changes nothing and returns false.
+  // segment, or if an argument is not permitted, the function changes nothing and returns false. Arguments
+  // with which a coefficient or the end of the segment would not be finite are not permitted.
 
   /// Appends a minimum-jerk ramp with the peak speed `speed` (> 0, per s). If the reference was cut while it
   /// moved, a braking segment is appended before the ramp.
@@ -84,7 +85,7 @@ class Reference {
   [[nodiscard]] static double value_of(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] static ReferencePoint evaluate(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] ReferencePoint last_point() const noexcept;
-  Segment* append(Shape shape, double duration_s) noexcept;
+  bool append(Shape shape, double duration_s, const std::array<double, 6>& c) noexcept;
 
   std::array<Segment, capacity> segments_{};
   std::size_t count_ = 0;

@@ -15,10 +15,6 @@ namespace {
 
 /// Shortest time in which the difference between the plan and the reference fades out [s].
 constexpr double fade_s = 0.5;
-/// Largest difference between two successive increments of the reference that is not a jump [mm]. An
-/// increment is the change in one tick. At 200 Hz, a reversal from 50 mm/s upward to 50 mm/s downward has
-/// exactly this size.
-constexpr double jump_mm = 0.5;
 /// Peak acceleration and peak speed of a minimum-jerk motion over a distance of 1 in a time of 1.
 constexpr double peak_acceleration = 5.774;
 constexpr double peak_speed = 1.875;
@@ -42,6 +38,12 @@ model::Model bouc_wen_of(const model::Model& model) {
   return model::only(model, [](const model::BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
   });
+}
+
+/// Returns the difference of the settled displacements at the two ends of the pressure range [mm].
+double span_mm(const model::Model& model, const LimitSettings& limits) {
+  return std::abs(settled_line(model, limits).gain_mm_per_kpa) *
+         (limits.pressure_max_kpa - limits.pressure_min_kpa);
 }
 
 /// Returns the displacement that the model must reach at `time_s`: the reference within the limits, minus the
@@ -76,7 +78,8 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
                                                          .value_or(std::numeric_limits<double>::max()))),
       valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
-      inverse_(body_of(model), tick_s) {
+      inverse_(body_of(model), tick_s),
+      jumps_(tick_s, span_mm(model, limits)) {
   // Estimates the speed and the acceleration of the finger at the slew limit. The immediate response to
   // pressure determines the speed, and the creep determines the acceleration.
   const model::Chain<double> body(body_of(model), {}, tick_s);
@@ -131,7 +134,7 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
   const ReferencePoint wanted = target(query);
   fade_from(alone_mm, (alone_mm - before_mm) / tick_s_, wanted, query.time_s + preview_s_);
   last_displacement_mm_ = before_mm;
-  last_target_mm_ = {wanted.value, wanted.value};
+  jumps_.start(wanted.value);
 }
 
 void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
@@ -150,12 +153,10 @@ FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexce
   const double then_s = query.time_s + preview_s_;
   const double target_mm = wanted_mm(limits_, query, then_s);
   const double now_mm = inverse_.displacement_mm();
-  if (std::abs(target_mm - 2 * last_target_mm_[0] + last_target_mm_[1]) > jump_mm) {
+  if (jumps_.jumps_to(target_mm)) {
     const double going_mm = now_mm - last_displacement_mm_;
     fade_from(now_mm + going_mm, going_mm / tick_s_, target(query), then_s);
-    last_target_mm_[0] = target_mm;
   }
-  last_target_mm_ = {target_mm, last_target_mm_[0]};
   last_displacement_mm_ = now_mm;
 
   const auto solution =

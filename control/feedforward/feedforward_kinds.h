@@ -2,13 +2,13 @@
 // Defines one class for each kind of feedforward. The settings of the kinds are in
 // control/elements/feedforward.h.
 
-#include <array>
 #include <variant>
 
 #include "control/elements/feedforward.h"
 #include "control/elements/limits.h"
 #include "control/elements/reference.h"
 #include "control/feedforward/actuator_inverse.h"
+#include "control/feedforward/jump_detector.h"
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
 #include "control/feedforward/valve_inverse.h"
@@ -97,14 +97,13 @@ class FullModelFeedforward {
   ValveInverse valve_;
   double preview_s_;
   ActuatorInverse inverse_;
-  double command_kpa_ = 0;                  ///< pressure command of the last tick
-  double last_wanted_kpa_ = 0;              ///< pressure that was needed for the reference in the last tick
-  double easy_mm_per_s2_;                   ///< acceleration of the finger while the command changes at the
-                                            ///< slew limit
-  double easy_mm_per_s_;                    ///< speed at which the finger moves while the command changes at
-                                            ///< the slew limit
-  std::array<double, 2> last_target_mm_{};  ///< target displacements of the last two ticks, newest first
-  double last_displacement_mm_ = 0;         ///< displacement of the model at the start of the previous step
+  double command_kpa_ = 0;      ///< pressure command of the last tick
+  double last_wanted_kpa_ = 0;  ///< pressure that was needed for the reference in the last tick
+  double easy_mm_per_s2_;       ///< acceleration of the finger while the command changes at the slew limit
+  double easy_mm_per_s_;        ///< speed at which the finger moves while the command changes at the slew
+                                ///< limit
+  JumpDetector jumps_;          ///< jumps of the target displacement
+  double last_displacement_mm_ = 0;  ///< displacement of the model at the start of the previous step
   Reference fade_;  ///< fade-out of the difference after enter() or after a jump of the reference, on the
                     ///< clock of the reference
 };

@@ -9,71 +9,72 @@
 #include <cstdio>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <softgrip/board.h>
 
+using namespace std::chrono;
 using softgrip::BusStatus;
 
+/// After a failed exchange, a late response can still arrive. The driver therefore closes the connection, and
+/// connect() opens a new one.
 class LineBoard final : public softgrip::Board {
  public:
-  explicit LineBoard(int line) : line_(line) {}
+  explicit LineBoard(int (*dial)()) : dial_(dial) {}
+  ~LineBoard() override { ::close(line_); }
   std::size_t channels() const noexcept override { return 1; }
-  BusStatus connect(std::chrono::nanoseconds) noexcept override { return BusStatus::ok; }
-
+  BusStatus connect(nanoseconds) noexcept override {
+    ::close(std::exchange(line_, dial_()));
+    return line_ >= 0 ? BusStatus::ok : BusStatus::disconnected;
+  }
   BusStatus exchange(std::span<const double> commands_kpa, std::span<softgrip::Reading> readings,
-                     std::chrono::nanoseconds deadline) noexcept override {
-    char text[64];
+                     nanoseconds deadline) noexcept override {
+    const auto end = steady_clock::now() + deadline;
+    char text[64] = "";
     const int length = std::snprintf(text, sizeof text, "SET %.3f\n", commands_kpa[0]);
-    if (::write(line_, text, static_cast<std::size_t>(length)) != length) return failed("write");
-    pollfd input{line_, POLLIN, 0};
-    const auto wait_ms = std::chrono::ceil<std::chrono::milliseconds>(deadline).count();
-    if (::poll(&input, 1, static_cast<int>(wait_ms)) != 1) {
-      detail_ = "no response within the deadline";
-      return BusStatus::timed_out;
+    if (::send(line_, text, length, MSG_NOSIGNAL) != length) return failed(BusStatus::disconnected);
+    for (std::size_t size = 0; size == 0 || text[size - 1] != '\n'; text[size] = '\0') {
+      pollfd input{line_, POLLIN, 0};
+      const auto left = ceil<milliseconds>(end - steady_clock::now()).count();
+      if (left < 0 || ::poll(&input, 1, static_cast<int>(left)) != 1) return failed(BusStatus::timed_out);
+      const ssize_t received = ::read(line_, text + size, sizeof text - 1 - size);
+      if (received <= 0) return failed(BusStatus::disconnected);
+      size += received;
     }
-    const ssize_t received = ::read(line_, text, sizeof text - 1);
-    if (received <= 0) return failed("read");
-    text[received] = '\0';
-    double position_mm = 0;
-    if (std::sscanf(text, "POS %lf", &position_mm) != 1) return BusStatus::bad_reply;
-    readings[0].displacement = position_mm;
-    readings[0].sampled_at = std::chrono::steady_clock::now().time_since_epoch();
-    readings[0].sequence += 1;
-    readings[0].validity = softgrip::Validity::valid;
+    softgrip::Reading now{.sequence = readings[0].sequence + 1, .validity = softgrip::Validity::valid};
+    if (std::sscanf(text, "POS %lf", &now.displacement) != 1) return failed(BusStatus::bad_reply);
+    now.sampled_at = steady_clock::now().time_since_epoch();
+    readings[0] = now;
     return BusStatus::ok;
   }
-  std::string detail() const override { return detail_; }
   std::string describe() const override { return "line board"; }
 
  private:
-  BusStatus failed(const char* what) noexcept {
-    detail_ = what;
-    return BusStatus::disconnected;
+  BusStatus failed(BusStatus status) noexcept {
+    ::close(std::exchange(line_, -1));
+    return status;
   }
-  int line_;
-  const char* detail_ = "";
+  int (*dial_)();
+  int line_ = -1;
 };
 
-int main() {
+int dial() {
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return 1;
-  std::thread device([line = ends[1]] {
-    char text[64];
-    double command_kpa = 0;
-    for (ssize_t n = 0; (n = ::read(line, text, sizeof text - 1)) > 0;) {
-      text[n] = '\0';
-      if (std::sscanf(text, "SET %lf", &command_kpa) == 1) ::dprintf(line, "POS %.3f\n", 0.2 * command_kpa);
-    }
-  });
-  LineBoard board(ends[0]);
+  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return -1;
+  std::thread([line = ends[1]] {
+    for (char text[64] = ""; ::read(line, text, sizeof text - 1) > 0;)
+      ::dprintf(line, "POS %.3f\n", 0.2 * std::stod(text + 4));
+  }).detach();
+  return ends[0];
+}
+
+int main() {
+  LineBoard board(dial);
+  if (board.connect(1s) != BusStatus::ok) return 1;
   softgrip::Reading reading;
-  bool good = true;
   for (const double command_kpa : {0.0, 10.0, 20.0}) {
-    const BusStatus status = board.exchange({&command_kpa, 1}, {&reading, 1}, std::chrono::seconds(1));
+    const BusStatus status = board.exchange({&command_kpa, 1}, {&reading, 1}, 1s);
     std::printf("%4.1f kPa: %s, %.1f mm\n", command_kpa, name_of(status).c_str(), reading.displacement);
-    good = good && status == BusStatus::ok;
+    if (status != BusStatus::ok) return 1;
   }
-  ::shutdown(ends[0], SHUT_RDWR);
-  device.join();
-  return good ? 0 : 1;
 }

@@ -7,35 +7,49 @@ board_driver.py writes three commands and prints the readings.
 import socket
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Optional
 
 import softgrip
 
 
 class LineBoard(softgrip.Board):
-    def __init__(self, line: socket.socket) -> None:
-        self._line = line
-        self._replies = line.makefile("r")
+    """After a failed exchange, a late response can still arrive. The driver therefore closes the connection, and
+    `connect()` opens a new one."""
+
+    def __init__(self, dial: Callable[[], socket.socket]) -> None:
+        self._dial = dial
+        self._line: Optional[socket.socket] = None
         self._sequence = 0
 
     @property
     def channels(self) -> int:
         return 1
 
+    def connect(self, deadline: float) -> None:
+        self.close()
+        self._line = self._dial()
+
+    def close(self) -> None:
+        if self._line is not None:
+            self._line.close()
+        self._line = None
+
     def exchange(self, commands: Sequence[float], deadline: float) -> Sequence[softgrip.Reading]:
+        if self._line is None:
+            raise softgrip.BusError("disconnected", "no connection")
         self._line.settimeout(deadline)
         try:
             self._line.sendall(f"SET {commands[0]:.3f}\n".encode())
-            word, position = self._replies.readline().split()
-            displacement = float(position)
-        except socket.timeout as error:
-            raise softgrip.BusError("timed_out", "no response within the deadline") from error
-        except OSError as error:
-            raise softgrip.BusError("disconnected", str(error)) from error
-        except ValueError as error:
-            raise softgrip.BusError("bad_reply", str(error)) from error
-        if word != "POS":
-            raise softgrip.BusError("bad_reply", f"{word!r} is not POS")
+            with self._line.makefile("r") as replies:
+                reply = replies.readline()
+            if not (reply.startswith("POS ") and reply.endswith("\n")):
+                raise ValueError(f"{reply!r} is not a position")
+            displacement = float(reply[4:])
+        except (OSError, ValueError) as error:
+            self.close()
+            kind = "bad_reply" if isinstance(error, ValueError) else "disconnected"
+            raise softgrip.BusError("timed_out" if isinstance(error, socket.timeout) else kind, str(error)) from error
         self._sequence += 1
         return [softgrip.Reading(displacement, sampled_at=time.monotonic(), sequence=self._sequence)]
 
@@ -50,19 +64,16 @@ def device(line: socket.socket) -> None:
             text.flush()
 
 
-def main() -> None:
+def dial() -> socket.socket:
     here, there = socket.socketpair()
-    player = threading.Thread(target=device, args=[there])
-    player.start()
-    with here:
-        board = LineBoard(here)
-        board.connect(deadline=1)
-        for command in (0.0, 10.0, 20.0):
-            reading, = board.exchange([command], deadline=1)
-            print(f"{command:4.1f} kPa: {reading.validity}, {reading.displacement:.1f} mm")
-        here.shutdown(socket.SHUT_RDWR)
-    player.join()
+    threading.Thread(target=device, args=[there]).start()
+    return here
 
 
 if __name__ == "__main__":
-    main()
+    board = LineBoard(dial)
+    board.connect(deadline=1)
+    for command in (0.0, 10.0, 20.0):
+        reading, = board.exchange([command], deadline=1)
+        print(f"{command:4.1f} kPa: {reading.validity}, {reading.displacement:.1f} mm")
+    board.close()

@@ -3,6 +3,7 @@
 // seconds.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -79,10 +80,13 @@ class TransportDelay {
   };
 
   // Returns the initial number of pieces of the delay line: 4 per sample. Each sample needs two pieces (a
-  // jump and a ramp). This number is doubled, because samples may be shorter than the nominal sample time.
+  // jump and a ramp). This number is doubled, because samples may be shorter than the nominal sample time. If
+  // the result would be above 2^22, the result is 2^22, and step() enlarges the line if necessary.
   static std::size_t initial_size(double delay_s, double sample_time_s) {
     if (sample_time_s <= 0) return 64;
-    const std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
+    constexpr double most = 1 << 22;
+    const std::size_t needed =
+        static_cast<std::size_t>(std::min(most, 16.0 + std::floor(4.0 * delay_s / sample_time_s)));
     std::size_t size = 64;
     while (size < needed) size *= 2;
     return size;

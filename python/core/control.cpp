@@ -95,10 +95,11 @@ py::tuple limited(const LimitsTuple& limits, double wanted_kpa, double last_kpa,
 /// Raises InvalidArgument with the possible reasons if the reference did not append a segment.
 void require_appended(bool appended, const Reference& reference) {
   if (!appended)
-    throw InvalidArgument("segment",
-                          "a value is not finite, a duration, frequency or number of cycles is not above 0, "
-                          "or the reference already has 8 segments. The last segment ends at " +
-                              std::to_string(reference.end_s()) + " s");
+    throw InvalidArgument(
+        "segment",
+        "a value is not finite, a duration, frequency or number of cycles is not above 0, "
+        "the segment overflows, or the reference already has 8 segments. The last segment ends at " +
+            std::to_string(reference.end_s()) + " s");
 }
 
 Controller controller_of(const Model& model, const LimitsTuple& limits, const PidTuple& pid,

@@ -42,6 +42,10 @@ class Refused(SoftgripError):
         super().__init__(f"{message} ({code})")
         self.code = code
         self.name = name
+        self._message = message
+
+    def __reduce__(self) -> tuple[type[Refused], tuple[str, str, str]]:
+        return type(self), (self._message, self.code, self.name)
 
 
 class Owned(Refused):
@@ -54,6 +58,10 @@ class SequenceRefused(SoftgripError):
     def __init__(self, message: str, problems: tuple[Problem, ...]) -> None:
         super().__init__("\n".join([message, *map(str, problems)]))
         self.problems = problems
+        self._message = message
+
+    def __reduce__(self) -> tuple[type[SequenceRefused], tuple[str, tuple[Problem, ...]]]:
+        return type(self), (self._message, self.problems)
 
 
 class GripFailed(SoftgripError):
@@ -64,6 +72,9 @@ class GripFailed(SoftgripError):
                          (f", the sequence ended: {end.value}" if end else ""))
         self.result = result
         self.end = end
+
+    def __reduce__(self) -> tuple[type[GripFailed], tuple[Result, Optional[SequenceEnd]]]:
+        return type(self), (self.result, self.end)
 
 
 class StopNotConfirmed(SoftgripError):

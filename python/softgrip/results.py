@@ -160,8 +160,11 @@ class Validation(_Reported):
 
 @dataclasses.dataclass(frozen=True)
 class Cause:
-    """A cause that a diagnosis names. In a `Change`, the error reduction is NaN, and the parameters contain the size of
-    the change. The error reduction is also NaN if only one-step predictions in a closed loop show the cause."""
+    """A cause that a diagnosis names. In a `Diagnosis`, the error reduction is the reduction of the error on held-out
+    blocks. It is NaN if only one-step predictions in a closed loop show the cause. In a `Change`, the error reduction is
+    the reduction of the whitened RMS error of the later logs, to which the size of the cause is fitted. It is NaN for
+    "outliers" and "sampling", which are found without a fit. In a `Change`, the parameters contain the size of the
+    change."""
 
     id: str
     title: str

@@ -148,6 +148,14 @@ TEST_F(LibraryAndCommand, ChangeDiagnosesAreIdenticalAndDoNotUseDriveAndBegin) {
   const Change found = diagnose_change(Model::load(model_), healthy, later);
   EXPECT_EQ(plain(found.json, {"wall_s"}), expected);
   EXPECT_NE(found.verdict, "unchanged");
+  ASSERT_FALSE(found.causes.empty());
+  ASSERT_EQ(found.causes.size(), expected["causes"].size());
+  for (std::size_t i = 0; i < found.causes.size(); ++i) {
+    const Json& reduction = expected["causes"][i]["heldout_error_reduction_percent"];
+    EXPECT_EQ(found.causes[i].error_reduction_percent, reduction["value"].get<double>());
+    EXPECT_EQ(found.causes[i].error_reduction_ci95.lower, reduction["ci95"][0].get<double>());
+    EXPECT_EQ(found.causes[i].error_reduction_ci95.upper, reduction["ci95"][1].get<double>());
+  }
   DiagnoseOptions options;
   options.use = {Drive::measured, Begin::unknown, false};
   EXPECT_EQ(plain(diagnose_change(Model::load(model_), healthy, later, options).json, {"wall_s"}), expected);
@@ -256,6 +264,25 @@ TEST_F(LibraryAndCommand, HealthThrowsForInvalidInputAndOnCancellation) {
   EXPECT_THROW((void)health(recordings, path("base"), {.stop = stop.get_token()}), Cancelled);
   std::ofstream(path("base/model.yaml")) << "changed\n";
   EXPECT_THROW((void)health(recordings, path("base")), FileError);
+}
+
+TEST_F(LibraryAndCommand, AChoiceOfTheStructureRefusesTheSettingsOfAGivenStructure) {
+  const std::vector<Log> logs{read_log(path("one.csv"))};
+  const auto refused = [&](IdentifyOptions options) {
+    options.structure = Structure::automatic;
+    try {
+      (void)identify(logs, options);
+    } catch (const InvalidArgument& error) {
+      return error.argument();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused({.start = Model::load(model_)}), "start");
+  EXPECT_EQ(refused({.branches = 3}), "branches");
+  EXPECT_EQ(refused({.fixed = {"kelvin_voigt.k0_kpa_per_mm"}}), "fixed");
+  EXPECT_EQ(refused({.fixed = {"no.such"}}), "fixed");
+  EXPECT_EQ(refused({.free = {"kelvin_voigt.k0_kpa_per_mm"}}), "free");
+  EXPECT_EQ(refused({.robust = true}), "robust");
 }
 
 TEST_F(LibraryAndCommand, InvalidInputThrowsAnException) {

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "library/include/softgrip/board.h"
 #include "tests/library/finger.h"
@@ -116,6 +119,81 @@ TEST(LibraryControl, AReferenceRefusesInvalidSegments) {
   EXPECT_EQ(copy.end_s(), 1);
   for (int i = 0; i < 7; ++i) EXPECT_TRUE(reference.hold_for(1)) << i;
   EXPECT_FALSE(reference.hold_for(1));
+}
+
+TEST(LibraryControl, AReferenceRefusesSegmentsThatAreNotFinite) {
+  Reference reference(1e308);
+  EXPECT_FALSE(reference.ramp_to(-1e308, 1));
+  EXPECT_EQ(reference.at(0.5), 1e308);
+  reference.start(0, 0);
+  EXPECT_FALSE(reference.ramp_to(5, 1e-120));
+  EXPECT_EQ(reference.at(1), 0);
+}
+
+/// Returns the commands of a feedforward for a sine reference. Before the steps `broken`, the feedforward
+/// gets the reference `value` for three further steps.
+std::vector<double> commands_with(FeedforwardKind kind, double value, const std::vector<int>& broken) {
+  Limits limits;
+  limits.pressure_max_kpa = 60;
+  Feedforward feedforward(bench_twin(), limits, 0.005, kind);
+  feedforward.start(5, 1);
+  std::vector<double> commands_kpa;
+  for (int k = 0; k < 400; ++k) {
+    if (std::find(broken.begin(), broken.end(), k) != broken.end()) {
+      const double last_kpa = k > 0 ? commands_kpa.back() : kind == FeedforwardKind::none ? 0 : 5;
+      for (int i = 0; i < 3; ++i) {
+        const FeedforwardStep held = feedforward.step(value);
+        EXPECT_EQ(held.pressure_kpa, last_kpa) << k;
+        EXPECT_TRUE(held.out_of_reach) << k;
+      }
+    }
+    commands_kpa.push_back(feedforward.step(2 - std::cos(0.02 * k)).pressure_kpa);
+  }
+  return commands_kpa;
+}
+
+TEST(LibraryControl, AReferenceThatIsNotFiniteHoldsTheCommandAndChangesNoState) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const FeedforwardKind kind :
+       {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {
+    const std::vector<double> expected = commands_with(kind, 0, {});
+    for (const double value : {nan, infinity, -infinity})
+      EXPECT_EQ(commands_with(kind, value, {0, 1, 200}), expected) << static_cast<int>(kind) << " " << value;
+  }
+}
+
+TEST(LibraryControl, StartOfAFeedforwardDiscardsThePreviousMotion) {
+  Limits limits;
+  limits.pressure_max_kpa = 60;
+  for (const FeedforwardKind kind : {FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {
+    Feedforward feedforward(bench_twin(), limits, 0.005, kind);
+    const auto run = [&] {
+      feedforward.start(2, 1);
+      std::vector<double> commands_kpa;
+      for (int k = 0; k < 300; ++k)
+        commands_kpa.push_back(feedforward.step(3 - 2 * std::cos(0.02 * k)).pressure_kpa);
+      return commands_kpa;
+    };
+    const std::vector<double> first = run();
+    EXPECT_EQ(run(), first) << static_cast<int>(kind);
+    const double last_kpa = first.back();
+    feedforward.start(nan, 1);
+    feedforward.start(2, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(feedforward.step(nan).pressure_kpa, last_kpa) << "a start with such an argument has no effect";
+  }
+}
+
+TEST(LibraryControl, RefusesATickThatIsTooShortForASimulatedBoard) {
+  const std::vector<SimulatedFinger> fingers{{.model = bench_twin()}};
+  for (const double tick_s : {0.0, -1.0, 1e-300, 1e-9, 9e-7, nan}) {
+    EXPECT_THROW(SimulatedBoard(fingers, tick_s), InvalidArgument) << tick_s;
+    if (tick_s != 0) {
+      EXPECT_THROW(Simulator(bench_twin(), tick_s), InvalidArgument) << tick_s;
+    }
+  }
+  EXPECT_NO_THROW(SimulatedBoard(fingers, 1e-6));
+  EXPECT_NO_THROW(Simulator(bench_twin(), 1e-6));
+  EXPECT_NO_THROW(Simulator(bench_twin(), 0));
 }
 
 TEST(LibraryControl, RefusesAModelWithoutAnInverse) {

@@ -19,6 +19,19 @@ cmake -S "$source/examples/cpp" -B examples -DCMAKE_PREFIX_PATH="$work/installed
 cmake --build examples -j 2 >build.log 2>&1 || { cat build.log; fail "build"; }
 run_examples examples "$build/tools/softgrip" "$build/daemon/softgripd"
 
+# A response that arrives after its deadline must not become the reading of a later command.
+libraries=$work/$(dirname "$(find installed -name libsoftgrip.so)")
+c++ -std=c++20 -I installed/include -I "$source/examples/cpp" "$source/tests/library/late_response.cpp" -L "$libraries" \
+  -Wl,-rpath,"$libraries" -lsoftgrip -pthread -o late_response
+./late_response >late.txt
+diff - late.txt <<'END' || fail "board_driver.cpp uses a late response, or does not work after it"
+5 kPa: ok, 1.0 mm
+10 kPa: timed_out, 1.0 mm
+20 kPa: disconnected, 1.0 mm
+connect: ok
+30 kPa: ok, 6.0 mm
+END
+
 if command -v pkg-config >/dev/null; then
   folder=$(find installed -name softgrip.pc -printf '%h\n')
   export PKG_CONFIG_PATH=$work/$folder

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
 
 #include "library/include/softgrip/error.h"
 #include "library/include/softgrip/export.h"
@@ -103,6 +105,59 @@ TEST(LibraryModel, TheInverseLeadsToTheReference) {
     ASSERT_NEAR(moved[i], wanted.value[i], 1e-3) << i;
   }
   EXPECT_EQ(compared, moved.size() - 600);
+}
+
+/// Returns bench_twin in degrees, with a motion that is ten times larger.
+Model turning_twin() {
+  Model model = bench_twin();
+  for (const Parameter& one : model.parameters()) {
+    if (one.name == "bouc_wen.alpha_mm_per_kpa" || one.name == "bouc_wen.beta_mm_per_kpa")
+      model = model.with(one.name, 10 * one.value);
+    if (one.name.starts_with("kelvin_voigt.")) model = model.with(one.name, 0.1 * one.value);
+  }
+  return Model::parse("output_unit: deg\n" + model.yaml());
+}
+
+/// Returns the largest error of the displacement that a finger reaches with the inverse of `wanted`. The
+/// first 10 s do not count, because the initial difference decays in them.
+double inverse_error(const Model& model, const Course& wanted) {
+  SimulateOptions held;
+  held.held = true;
+  const std::vector<double> moved =
+      model.simulate(wanted.time_s, model.inverse(wanted.time_s, wanted.value).pressure_kpa, held);
+  double worst = 0;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    if (wanted.time_s[i] > 10) worst = std::max(worst, std::abs(moved[i] - wanted.value[i]));
+  return worst;
+}
+
+// Between two samples, the command is constant. The finger can therefore differ from the reference by a part
+// of the change of the reference in one step.
+TEST(LibraryModel, TheInverseFollowsTheReferenceWithAnyStep) {
+  struct Motion {
+    const char* name;
+    Model model;
+    double low, high, frequency_hz;
+  };
+  for (const Motion& motion :
+       {Motion{"mm", bench_twin(), 3, 9, 0.15}, Motion{"deg", turning_twin(), 75, 125, 0.25}}) {
+    for (const double step_s : {0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0}) {
+      const auto samples = static_cast<std::size_t>(60 / step_s);
+      const Course wanted = sine(motion.low, motion.high, motion.frequency_hz, samples, step_s);
+      const double fastest = std::numbers::pi * (motion.high - motion.low) * motion.frequency_hz;
+      EXPECT_LT(inverse_error(motion.model, wanted), 0.5 * fastest * step_s) << motion.name << " " << step_s;
+    }
+  }
+}
+
+TEST(LibraryModel, TheInverseFollowsANoisyReference) {
+  for (const double step_s : {0.001, 0.005, 0.01, 0.05}) {
+    Course wanted = sine(3, 9, 0.05, static_cast<std::size_t>(40 / step_s), step_s);
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, 0.3);
+    for (double& value : wanted.value) value += noise(random);
+    EXPECT_LT(inverse_error(bench_twin(), wanted), 2.5) << step_s;
+  }
 }
 
 TEST(LibraryModel, StatesThatAReferenceIsOutOfReach) {

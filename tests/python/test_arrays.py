@@ -92,6 +92,13 @@ class EqualToTheCommands(unittest.TestCase):
         found = identify(self.logs["one"], "auto", starts=3)
         self.assertEqual(plain(found.report, "call", "wall_s"), plain(expected, "call", "wall_s"))
 
+    def test_a_choice_of_the_structure_refuses_the_settings_of_a_given_structure(self):
+        for name, value in (("start", Model.load(MODEL)), ("branches", 3), ("fixed", ["no.such"]), ("robust", True),
+                            ("free", ["kelvin_voigt.k0_kpa_per_mm"])):
+            with self.assertRaises(softgrip.InvalidArgument) as raised:
+                identify(self.logs["one"], "auto", **{name: value})
+            self.assertEqual(raised.exception.argument, name)
+
     def test_identify_accepts_the_structures_of_the_command(self):
         t, pressure = sine(samples=200)
         log = Log(t, pressure, Model.load(MODEL).simulate(t, pressure, noise=0.05))
@@ -129,6 +136,9 @@ class EqualToTheCommands(unittest.TestCase):
         found = diagnose(Model.load(MODEL), self.logs["three"], healthy=[self.logs["one"], self.logs["two"]])
         self.assertEqual(plain(found.report, "wall_s"), plain(expected, "wall_s", "made_of"))
         self.assertIsInstance(found, softgrip.Change)
+        reductions = [cause["heldout_error_reduction_percent"] for cause in expected["causes"]]
+        self.assertEqual([one.error_reduction_percent for one in found.causes], [one["value"] for one in reductions])
+        self.assertEqual([list(one.error_reduction_ci95) for one in found.causes], [one["ci95"] for one in reductions])
         self.assertIn(found.causes[0].id, found._repr_html_())
         import matplotlib
         matplotlib.use("Agg")

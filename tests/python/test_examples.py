@@ -52,6 +52,42 @@ class Examples(unittest.TestCase):
             self.check_grip(at)
         self.assertEqual(self.ran, {path.name for path in EXAMPLES.glob("*.py")})
 
+    def test_the_board_driver_uses_no_late_response(self):
+        code = """
+import socket, threading
+import board_driver, softgrip
+answer = threading.Event()
+def device(line):
+    with line, line.makefile("r") as commands:
+        for command in commands:
+            pressure = float(command.split()[1])
+            if pressure == 10:
+                answer.wait()
+            try:
+                line.sendall(f"POS {0.2 * pressure:.3f}\\n".encode())
+            except BrokenPipeError:
+                return
+def dial():
+    here, there = socket.socketpair()
+    threading.Thread(target=device, args=[there]).start()
+    return here
+board = board_driver.LineBoard(dial)
+board.connect(deadline=1)
+for pressure in (5, 10, 20, None, 30):
+    if pressure is None:
+        answer.set()
+        board.connect(deadline=1)
+        continue
+    try:
+        print(pressure, board.exchange([pressure], deadline=0.2 if pressure == 10 else 30)[0].displacement)
+    except softgrip.BusError as error:
+        print(pressure, error.status)
+board.close()
+"""
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd=EXAMPLES,
+                              env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
+        self.assertEqual(done.stdout.splitlines(), ["5 1.0", "10 timed_out", "20 disconnected", "30 6.0"], done.stderr)
+
     def check_workflow(self, at):
         if not shutil.which("snakemake"):
             self.ran.add("logs_on_slurm.py")

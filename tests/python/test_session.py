@@ -1,6 +1,8 @@
 """Tests how the clients interpret the lines that the daemon sends. The tests use no socket."""
 
+import copy
 import json
+import pickle
 import unittest
 
 import package  # noqa: F401
@@ -311,6 +313,21 @@ class Replies(unittest.TestCase):
             self.assertIs(type(raised.exception), kind)
             if kind is errors.SequenceRefused:
                 self.assertEqual(str(raised.exception), "m\na.yaml:3:5: no")
+
+    def test_each_exception_can_be_pickled(self):
+        problem = softgrip.messages.Problem("a.yaml", 3, 5, "x", "no", "")
+        arguments = {errors.ProtocolError: ("m", "bad_request"), errors.Refused: ("m (x)", "R02", "not_idle"),
+                     errors.Owned: ("m", "owned", "owned"), errors.SequenceRefused: ("m", (problem,)),
+                     errors.GripFailed: (softgrip.Result.NO_PART, softgrip.SequenceEnd.FAILED),
+                     errors.UnreadableFile: (13, "m", "file"), errors.MissingFile: (2, "m", "file"),
+                     errors.InvalidArgument: ("time_s", "time_s: m"), errors.BusError: ("timed_out", "m")}
+        kinds = [kind for kind in vars(errors).values() if isinstance(kind, type) and issubclass(kind, Exception)]
+        self.assertLessEqual(set(arguments), set(kinds))
+        for kind in kinds:
+            error = kind(*arguments.get(kind, ("m",)))
+            for copied in (pickle.loads(pickle.dumps(error)), copy.copy(error)):
+                self.assertIs(type(copied), kind)
+                self.assertEqual((str(copied), vars(copied)), (str(error), vars(error)))
 
     def test_a_line_that_is_not_a_json_object_raises_a_protocol_error(self):
         for text in (b"HTTP/1.1 400 Bad Request", b"[]", b""):

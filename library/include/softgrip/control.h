@@ -126,7 +126,8 @@ class SOFTGRIP_API Reference {
   /// Removes all segments. From the time `time_s` [s] on, the reference is constant at `value`.
   void start(double time_s, double value) noexcept;
   /// Appends a minimum-jerk ramp to `value` with the duration `duration_s` [s], > 0. If the reference already
-  /// has 8 segments, or if an argument is out of range, the function has no effect and returns false.
+  /// has 8 segments, if an argument is out of range, or if the ramp or its end time would not be finite, the
+  /// function has no effect and returns false.
   bool ramp_to(double value, double duration_s) noexcept;
   /// Appends a constant segment of the duration `duration_s` [s], > 0. Returns false under the conditions
   /// that ramp_to() states.
@@ -159,7 +160,8 @@ enum class FeedforwardKind : std::uint8_t {
 /// Result of Feedforward::step().
 struct FeedforwardStep {
   double pressure_kpa = 0;    ///< pressure command of this period [kPa]
-  bool out_of_reach = false;  ///< true: because of the limits, the finger cannot reach the reference
+  bool out_of_reach = false;  ///< true: because of the limits, the finger cannot reach the reference, or the
+                              ///< reference is not finite
 };
 
 /// Computes the command for a reference with the inverse of a model, one command per period. Each call of
@@ -188,11 +190,14 @@ class SOFTGRIP_API Feedforward {
 
   /// Returns the preview time [s]. step() needs the value of the reference at the time "now + preview_s()".
   [[nodiscard]] double preview_s() const noexcept;
-  /// Starts the feedforward with a finger at rest.
+  /// Starts the feedforward with a finger at rest. If an argument is not finite, the call has no effect.
   /// @param command_kpa      command under which the finger is at rest [kPa]
   /// @param reference_ahead  value of the reference preview_s() after the present, in the unit of the model
   void start(double command_kpa, double reference_ahead) noexcept;
-  /// Returns the command for this period. The board holds this command until the next period.
+  /// Returns the command for this period. The board holds this command until the next period. If
+  /// `reference_ahead` is not finite, the result is the last command with `out_of_reach` = true, and the
+  /// state does not change. The last command is then the command of start(), limited to the pressure range,
+  /// if no step followed start(). For the kind `none`, the command is always 0.
   /// @param reference_ahead  value of the reference preview_s() after the present, in the unit of the model
   [[nodiscard]] FeedforwardStep step(double reference_ahead) noexcept;
 

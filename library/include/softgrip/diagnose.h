@@ -24,10 +24,14 @@ struct Cause {
   std::string id;     ///< id of the cause, for example "valve_deadband"; the reference page "causes" lists
                       ///< all ids
   std::string title;  ///< name of the cause in words
-  /// Reduction of the held-out error by the cause [%]. The value is NaN in a Change, and if only one-step
-  /// predictions in a closed loop show the cause.
+  /// Reduction of the error by the cause [%]. In a Diagnosis, the error is that of held-out blocks. The value
+  /// is NaN if only one-step predictions in a closed loop show the cause. In a Change, the error is the
+  /// whitened RMS error of the later logs. These logs were not used for the fit of the baseline model, but
+  /// the size of the cause is fitted to them. The value is NaN for the causes "outliers" and "sampling",
+  /// which are found without a fit.
   double error_reduction_percent = 0;
-  Interval error_reduction_ci95;          ///< 95 % interval of error_reduction_percent [%]
+  Interval error_reduction_ci95;          ///< 95 % interval of error_reduction_percent [%]; NaN if
+                                          ///< error_reduction_percent is NaN
   std::vector<Estimate> parameters;       ///< estimated parameters of the cause; in a Change: the size of the
                                           ///< change of the finger
   std::vector<std::string> alternatives;  ///< ids of alternative causes that the logs cannot separate from

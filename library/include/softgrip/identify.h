@@ -65,11 +65,11 @@ enum class Structure : std::uint8_t {
   play [[deprecated("use prandtl_ishlinskii")]] = prandtl_ishlinskii,  ///< deprecated name
 };
 
-/// Settings of identify().
+/// Settings of identify(). If `structure` is not Structure::start, the settings `start`, `branches`, `fixed`,
+/// `free` and `robust` must have their default values. Otherwise, identify() throws InvalidArgument.
 struct IdentifyOptions {
   Structure structure = Structure::start;  ///< rule that determines the structure of the model
-  std::optional<Model> start = {};         ///< model from which the fit starts; used only for
-                                           ///< Structure::start
+  std::optional<Model> start = {};         ///< model from which the fit starts
   std::size_t branches = 2;                ///< number of creep branches of the default structure, 1 to 8
   std::vector<std::string> fixed = {};     ///< names of the parameters that keep their value from `start`
   std::vector<std::string> free = {};      ///< names of the parameters that are estimated; empty: all

@@ -137,13 +137,14 @@ class SOFTGRIP_API Model {
   std::shared_ptr<const Parts> parts_;
 };
 
-/// Simulates a finger step by step. The constructor allocates memory. If `sample_time_s` is above 0, step()
-/// and reset() allocate no memory. Only one thread at a time may use an object.
+/// Simulates a finger step by step. The constructor allocates memory. If `sample_time_s` is above 0 and at
+/// least a millionth of the dead time of the model, step() and reset() allocate no memory. Only one thread at
+/// a time may use an object.
 class SOFTGRIP_API Simulator {
  public:
-  /// Creates a finger at rest under 0 kPa.
+  /// Creates a finger at rest under 0 kPa. Throws InvalidArgument if `sample_time_s` is invalid.
   /// @param model          model of the finger
-  /// @param sample_time_s  usual duration of a step [s]; 0: the durations are irregular
+  /// @param sample_time_s  usual duration of a step [s], at least 1e-6; 0: the durations are irregular
   /// @param seed           seed of the noise of the model's sensor
   explicit Simulator(const Model& model, double sample_time_s = 0, std::uint64_t seed = 1);
   ~Simulator();

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "control/feedforward/feedforward_kinds.h"
 #include "control/tick/channel_controller.h"
 #include "tests/control/simulated_finger.h"
 #include "tests/support/allocation_counter.h"
@@ -51,6 +52,16 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
     }
     test::count_allocations(false);
     EXPECT_EQ(test::allocations(), before) << "feedforward " << static_cast<int>(kind);
+  }
+}
+
+TEST(FeedforwardAllocation, AssigningAFeedforwardOfTheSameModelAllocatesNothing) {
+  const ChannelSettings settings = sim::twin_settings();
+  for (const FeedforwardKind kind :
+       {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {
+    const Feedforward at_rest(settings.model, {kind, 0}, settings.limits, sim::tick_s);
+    Feedforward feedforward = at_rest;
+    EXPECT_EQ(test::allocations_of([&] { feedforward = at_rest; }), 0U) << static_cast<int>(kind);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -196,6 +197,34 @@ TEST(Reference, StaysContinuousUnderRandomCutsAndRamps) {
     ASSERT_LE(std::abs(now - last), 0.05) << "at " << t;
     last = now;
   }
+}
+
+TEST(Reference, RefusesSegmentsThatAreNotFinite) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), most = 1e308;
+  Reference reference;
+  reference.start(0, most);
+  EXPECT_FALSE(reference.ramp_for(-most, 1)) << "the distance overflows";
+  EXPECT_FALSE(reference.ramp_to(-most, 1)) << "the distance overflows";
+  EXPECT_FALSE(reference.ramp_for(nan, 1));
+  EXPECT_FALSE(reference.sine(most, most, 1, 1)) << "the sum of mean and amplitude overflows";
+  EXPECT_FALSE(reference.sine(1, 1, most, most)) << "the angular frequency overflows";
+  EXPECT_FALSE(reference.sine(1, 1, 1e-300, most)) << "the duration overflows";
+  EXPECT_FALSE(reference.hold_for(std::numeric_limits<double>::infinity()));
+  reference.start(0, 0);
+  EXPECT_FALSE(reference.ramp_for(5, 1e-120)) << "the coefficients overflow";
+  EXPECT_EQ(reference.at(1).value, 0);
+  EXPECT_EQ(reference.end_s(), 0);
+  EXPECT_TRUE(reference.ramp_for(5, 1e-20));
+  EXPECT_NEAR(reference.at(1).value, 5, 1e-9);
+}
+
+TEST(Reference, ARefusedRampAfterACutChangesNothing) {
+  Reference reference;
+  ASSERT_TRUE(reference.ramp_for(10, 2));
+  reference.cut(1);
+  const double end_s = reference.end_s();
+  EXPECT_FALSE(reference.ramp_to(std::numeric_limits<double>::infinity(), 10));
+  EXPECT_EQ(reference.end_s(), end_s) << "the ramp that brakes the reference is removed too";
 }
 
 }  // namespace

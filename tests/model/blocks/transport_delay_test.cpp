@@ -42,6 +42,18 @@ TEST(TransportDelay, ShiftsAnyPiecewiseLinearSignalByAnyDelay) {
   }
 }
 
+// The size of the delay line must not overflow. The longest delay divided by the shortest sample time is not
+// representable as a number of samples.
+TEST(TransportDelay, AcceptsASampleTimeOfAnySize) {
+  for (const double sample_time_s : {1e-300, 1e-12, 1e-6, 1e300}) {
+    Block block = make<Block>({1000}, sample_time_s);
+    pass(block, Segment<double>::straight(400, 0, 5));
+    EXPECT_EQ(block.output(), 0);
+    pass(block, Segment<double>::straight(800, 5, 5));
+    EXPECT_NEAR(block.output(), 2.5, 1e-9) << sample_time_s;
+  }
+}
+
 TEST(TransportDelay, OutputSegmentsAreContinuousAndPreserveTheIntegral) {
   const std::vector<double> corners = random_corners(12, 300);
   Block block = make<Block>({0.0437});
