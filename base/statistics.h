@@ -1,5 +1,5 @@
 #pragma once
-// Computes medians, noise levels, regression lines and quantiles.
+// Computes medians, means, noise levels, regression lines and quantiles.
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +26,24 @@ template <class T>
 /// magnitude of the third differences, on which smooth signals and single steps have almost no effect.
 /// Returns 0 for fewer than 4 values.
 [[nodiscard]] double third_difference_noise(std::span<const double> values);
+
+/// Mean and standard deviation of values that are added one after the other (Welford, Technometrics 4, 1962).
+struct Moments {
+  std::size_t count = 0;
+  double mean = 0;
+  double squares = 0;  ///< sum of the squared deviations from the mean
+
+  void add(double value) {
+    ++count;
+    const double step = value - mean;
+    mean += step / static_cast<double>(count);
+    squares += step * (value - mean);
+  }
+  /// Returns the standard deviation; 0 for fewer than 2 values.
+  [[nodiscard]] double deviation() const {
+    return count > 1 ? std::sqrt(squares / static_cast<double>(count - 1)) : 0;
+  }
+};
 
 /// Sums from which the regression line through pairs (x, y) is computed. Pairs with a value that is not
 /// finite are skipped. variance_x() returns the variance of x, and covariance() the covariance of x and y,

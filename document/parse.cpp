@@ -242,10 +242,9 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     const auto first = frame.index.find(node.scalar);
     if (first == frame.index.end()) return true;
-    const Location at = frame.node.entries[first->second].key_at;
     refuse(node.at,
-           "the key `" + shown(node.scalar) + "` already appears at " + std::to_string(at.line) + ":" +
-               std::to_string(at.column),
+           "the key `" + shown(node.scalar) + "` already appears at " +
+               text_of(frame.node.entries[first->second].key_at),
            "remove one of the two keys");
     return false;
   }

@@ -61,8 +61,7 @@ void append_line(std::string& out, const Problem& problem) {
 }
 
 void append_problem(std::string& out, const Problem& problem, bool warning) {
-  out += shown(problem.file, 400);
-  out += ':' + std::to_string(problem.at.line) + ':' + std::to_string(problem.at.column) + ": ";
+  out += place_of(problem) + ": ";
   if (warning) out += "warning: ";
   out += problem.message + '\n';
   if (!problem.line_text.empty()) append_line(out, problem);
@@ -86,6 +85,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+std::string text_of(Location at) {
+  return std::to_string(at.line) + ":" + std::to_string(at.column);
+}
+
+std::string place_of(const Problem& problem) {
+  return shown(problem.file, 400) + ":" + text_of(problem.at);
+}
 
 void Problems::add(Problem problem) {
   ++error_count_;

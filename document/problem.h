@@ -17,6 +17,8 @@ struct Location {
 
   bool operator==(const Location&) const = default;
 };
+/// Returns "LINE:COLUMN".
+[[nodiscard]] std::string text_of(Location at);
 
 /// A problem of a document.
 struct Problem {
@@ -29,6 +31,8 @@ struct Problem {
 
   bool operator==(const Problem&) const = default;
 };
+/// Returns "FILE:LINE:COLUMN".
+[[nodiscard]] std::string place_of(const Problem& problem);
 
 /// All problems of one or several documents, in the order in which they were found. A document with an error
 /// is refused. A document that has only warnings is accepted, and its warnings are shown. The first `most`

@@ -10,7 +10,7 @@ namespace {
 
 std::string opened(const Node* open) {
   if (open == nullptr) return {};
-  return " that starts at " + std::to_string(open->at.line) + ":" + std::to_string(open->at.column);
+  return " that starts at " + text_of(open->at);
 }
 
 /// Returns true if a space is missing after a colon in `line`, as in `rate_hz:200`.
@@ -52,10 +52,6 @@ std::optional<SyntaxMessage> misaligned(const Document& document, const Node* op
                        "keys of one level start in the same column"};
 }
 
-std::string place(Location at) {
-  return std::to_string(at.line) + ":" + std::to_string(at.column);
-}
-
 /// Returns the message for a closing bracket that has no opening bracket, or whose opening bracket is of the
 /// other type.
 SyntaxMessage wrong_end(const Document& document, Location at) {
@@ -64,7 +60,7 @@ SyntaxMessage wrong_end(const Document& document, Location at) {
   const Bracket& bracket = open.back();
   const std::string opener(1, bracket.character);
   const std::string closer = bracket.character == '[' ? "]" : "}";
-  return {"the `" + opener + "` at " + place(bracket.at) + " is not closed: expected `" + closer + "` here",
+  return {"the `" + opener + "` at " + text_of(bracket.at) + " is not closed: expected `" + closer + "` here",
           "`" + closer + "` is missing where the " + (opener == "[" ? "list" : "map") + " ends"};
 }
 
@@ -286,7 +282,7 @@ SyntaxMessage syntax_message(const Document& document, std::string_view said, co
   const std::vector<Bracket> brackets = open_brackets(document.text, at);
   if (!result.hint.empty() || brackets.empty()) return result;
   if (result.message.find(" is not closed") != std::string::npos) return result;
-  result.hint = std::string("the `") + brackets.back().character + "` at " + place(brackets.back().at) +
+  result.hint = std::string("the `") + brackets.back().character + "` at " + text_of(brackets.back().at) +
                 " is not closed before this position";
   return result;
 }

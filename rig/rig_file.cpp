@@ -173,13 +173,9 @@ std::string read_name(MapReader& reader, std::string_view key) {
   return name;
 }
 
-std::string place(document::Location at) {
-  return std::to_string(at.line) + ":" + std::to_string(at.column);
-}
-
 void report_repeated(MapReader& reader, std::string_view key, const std::string& what,
                      document::Location first) {
-  reader.report(key, what + " is already used at " + place(first));
+  reader.report(key, what + " is already used at " + text_of(first));
 }
 
 namespace {

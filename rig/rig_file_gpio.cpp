@@ -67,7 +67,7 @@ void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevi
     if (other.chip != line.chip || other.line != line.line || other.offset != line.offset) continue;
     reader.report(line.line.empty() ? "offset" : "line", "this line is already the `" +
                                                              std::string(drivers::name_of(other.role)) +
-                                                             "` at " + place(settings.places[i].at));
+                                                             "` at " + text_of(settings.places[i].at));
   }
   settings.places.push_back(context.document.problem(node->at, ""));
   settings.lines.push_back(std::move(line));

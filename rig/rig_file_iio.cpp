@@ -94,7 +94,7 @@ class TerminalsReader {
     reader.report(
         "device",
         "`" + document::shown(terminal.channel) + "` of `" + document::shown(terminal.device) +
-            "` is already listed at " + place(first->second),
+            "` is already listed at " + text_of(first->second),
         "if two converters have the same name, give the label, the serial number or the address of each");
   }
 

@@ -88,8 +88,6 @@ struct Context {
 
 /// Reads a name that can be used in folders, metrics and messages: letters, digits, `-` and `_`.
 [[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
-/// Returns a location as text, for example "12:5" for line 12, column 5.
-[[nodiscard]] std::string place(document::Location at);
 /// Reports at `key` that `what` is already used: "WHAT is already used at 12:5", where 12:5 is the location
 /// `first`.
 void report_repeated(MapReader& reader, std::string_view key, const std::string& what,

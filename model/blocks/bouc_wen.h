@@ -11,9 +11,8 @@
 // the loop wider at high pressure rates,
 //   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
 // (Loop heights that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on Mechatronics 12,
-// 2007. In this block, the growth saturates.) A RateDependentSaturation makes the hysteretic state saturate
-// earlier at high rates, because it replaces eta by
-//   eta (1 + saturation r/(r + rate)).
+// 2007. In this block, the growth saturates.) A RateDependentSaturation replaces eta by
+// eta (1 + saturation r/(r + rate)), so that the hysteretic state saturates earlier at high rates.
 
 #include <array>
 #include <cmath>

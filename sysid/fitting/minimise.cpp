@@ -23,22 +23,20 @@ struct LeastSquaresPoint {
   double sum_of_squares = 0;
 };
 
-/// Least squares for descend(). `Values(z, r)` computes the residuals and returns false if they are not
-/// defined. `Derivatives(z, r, jacobian)` computes the residuals and their derivatives.
-template <class Values, class Derivatives>
+/// Least squares for descend(). `Evaluate(z, r, jacobian)` computes the residuals and their derivatives. An
+/// empty jacobian means that the derivatives are not needed. It returns false if a result is not defined.
+template <class Evaluate>
 class LeastSquares {
  public:
-  LeastSquares(Values values, Derivatives derivatives, std::size_t count, std::vector<double> lower,
-               std::vector<double> upper)
-      : values_(std::move(values)),
-        derivatives_(std::move(derivatives)),
+  LeastSquares(Evaluate evaluate, std::size_t count, std::vector<double> lower, std::vector<double> upper)
+      : evaluate_(std::move(evaluate)),
         r_(count),
         jacobian_(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(lower.size())),
         lower_(std::move(lower)),
         upper_(std::move(upper)) {}
 
   [[nodiscard]] LeastSquaresPoint at(std::vector<double> z) {
-    const bool defined = values_(z, std::span(r_));
+    const bool defined = evaluate_(z, std::span(r_), std::span<double>{});
     const double sum = Eigen::Map<const Eigen::VectorXd>(r_.data(), rows()).squaredNorm();
     return {std::move(z), defined && std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity()};
   }
@@ -47,7 +45,7 @@ class LeastSquares {
 
   [[nodiscard]] NormalEquations normal(const LeastSquaresPoint& point) {
     const Eigen::Index n = columns();
-    is_defined_ = derivatives_(point.z, std::span(r_), jacobian());
+    is_defined_ = evaluate_(point.z, std::span(r_), jacobian());
     if (!is_defined_) return {Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Identity(n, n)};
     const Eigen::Map<const Eigen::VectorXd> r(r_.data(), rows());
     Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
@@ -80,8 +78,7 @@ class LeastSquares {
     return {jacobian_.data(), static_cast<std::size_t>(jacobian_.size())};
   }
 
-  Values values_;
-  Derivatives derivatives_;
+  Evaluate evaluate_;
   std::vector<double> r_;
   Jacobian jacobian_;
   std::vector<double> lower_, upper_;
@@ -137,17 +134,12 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
     lower.push_back(held ? z[i] : free[i].lower_z());
     upper.push_back(held ? z[i] : free[i].upper_z());
   }
-  const auto values = [&](std::span<const double> at, std::span<double> r) {
-    if (!residuals.evaluate(at, r, {})) return false;
-    apply_huber(options.huber_mm, r, {});
-    return true;
-  };
-  const auto derivatives = [&](std::span<const double> at, std::span<double> r, std::span<double> jacobian) {
+  const auto evaluate = [&](std::span<const double> at, std::span<double> r, std::span<double> jacobian) {
     if (!residuals.evaluate(at, r, jacobian)) return false;
     apply_huber(options.huber_mm, r, jacobian);
     return true;
   };
-  LeastSquares problem(values, derivatives, residuals.count(), std::move(lower), std::move(upper));
+  LeastSquares problem(evaluate, residuals.count(), std::move(lower), std::move(upper));
   auto end =
       descend(problem, problem.at(std::move(z)), options_for(options.most_iterations, options.tolerance));
   minimum.z = std::move(end.point.z);
@@ -162,13 +154,10 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
 
 PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, std::vector<double> start,
                             double tolerance) {
-  const auto values = [&](std::span<const double> p, std::span<double> r) {
-    residuals(p, r);
-    return true;
-  };
   std::vector<double> higher(count), lesser(count);
-  const auto derivatives = [&](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {
+  const auto evaluate = [&](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {
     residuals(p, r);
+    if (jacobian.empty()) return true;
     std::vector<double> shifted(p.begin(), p.end());
     for (std::size_t c = 0; c < p.size(); ++c) {
       const double step = std::max(relative_difference * std::abs(p[c]), least_difference);
@@ -183,7 +172,7 @@ PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, 
     return std::ranges::all_of(jacobian, [](double slope) { return std::isfinite(slope); });
   };
   constexpr double unbounded = std::numeric_limits<double>::infinity();
-  LeastSquares problem(values, derivatives, count, std::vector<double>(start.size(), -unbounded),
+  LeastSquares problem(evaluate, count, std::vector<double>(start.size(), -unbounded),
                        std::vector<double>(start.size(), unbounded));
   constexpr int most_iterations = 100;
   auto end = descend(problem, problem.at(std::move(start)), options_for(most_iterations, tolerance));

@@ -1,6 +1,7 @@
 #include "base/statistics.h"
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <utility>
 #include <vector>
@@ -17,6 +18,17 @@ TEST(Median, IsTheUpperOfTwoMiddleValues) {
   EXPECT_EQ(median_of(std::span(none)), 0);
   std::array<int, 4> part{7, 8, 9, -1};
   EXPECT_EQ(median_of(std::span(part).first(3)), 8);
+}
+
+TEST(Moments, ComputeTheMeanAndTheStandardDeviationBesideALargeOffset) {
+  Moments moments;
+  EXPECT_EQ(moments.deviation(), 0);
+  moments.add(1e9 + 4);
+  EXPECT_EQ(moments.deviation(), 0);
+  for (const double x : {7.0, 13.0, 16.0}) moments.add(1e9 + x);
+  EXPECT_EQ(moments.count, 4U);
+  EXPECT_DOUBLE_EQ(moments.mean, 1e9 + 10);
+  EXPECT_NEAR(moments.deviation(), std::sqrt(30.0), 1e-9);  // (36 + 9 + 9 + 36) / 3
 }
 
 TEST(PairSums, ComputeTheSlopeAndSkipNaN) {

@@ -23,6 +23,11 @@ TEST(Problems, AMessageShowsLocationLineCaretAndHint) {
             "    hint: write `delay_s`\n");
 }
 
+TEST(Problem, IsLocatedByFileLineAndColumn) {
+  EXPECT_EQ(text_of(Location{12, 5}), "12:5");
+  EXPECT_EQ(place_of(problem_at(12, 5, "")), "a.yaml:12:5");
+}
+
 TEST(Problems, WithoutProblemsTheTextIsEmpty) {
   EXPECT_EQ(Problems().format(), "");
 }

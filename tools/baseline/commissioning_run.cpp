@@ -8,6 +8,7 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "base/time.h"
 #include "daemon/service/signals.h"
 #include "sysid/diagnosis/experiments/experiment.h"
@@ -104,14 +105,11 @@ double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
 
 /// Returns the standard deviation of the valid readings before the pressure rises [mm].
 double noise_at_rest_mm(const sysid::Log& log) {
-  std::vector<double> readings;
+  Moments readings;
   for (std::size_t i = 0; i < log.size() && log.pressure_command_kpa[i] <= 0; ++i) {
-    if (std::isfinite(log.displacement_mm[i])) readings.push_back(log.displacement_mm[i]);
+    if (std::isfinite(log.displacement_mm[i])) readings.add(log.displacement_mm[i]);
   }
-  double mean = 0, squares = 0;
-  for (const double reading : readings) mean += reading / static_cast<double>(readings.size());
-  for (const double reading : readings) squares += (reading - mean) * (reading - mean);
-  return readings.size() > 1 ? std::sqrt(squares / static_cast<double>(readings.size() - 1)) : 0;
+  return readings.deviation();
 }
 
 /// Returns limits of the rig for the experiments. Up to the largest pressure of these limits, the finger uses

@@ -35,10 +35,8 @@ calibrate::Expected<std::unique_ptr<ManualRig>> ManualRig::open(const rig::RigFi
   if (move && rig.gpio) {
     auto opened = drivers::open_gpio_lines(rig.gpio->lines);
     if (!opened) {
-      const document::Problem& place = rig.gpio->places[opened.error().line];
       return tl::unexpected(calibrate::Refusal{
-          ExitCode::io, place.file + ":" + std::to_string(place.at.line) + ":" +
-                            std::to_string(place.at.column) + ": " + opened.error().message});
+          ExitCode::io, place_of(rig.gpio->places[opened.error().line]) + ": " + opened.error().message});
     }
     lines = std::move(*opened);
   }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/statistics.h"
 #include "control/elements/fault.h"
 #include "control/elements/limits.h"
 #include "daemon/loop/bus.h"
@@ -28,12 +29,9 @@ constexpr std::uint64_t least_cycles = 3;
 class Gathering {
  public:
   void add(double value) {
-    ++sample_.count;
-    const double step = value - sample_.mean;
-    sample_.mean += step / static_cast<double>(sample_.count);
-    squares_ += step * (value - sample_.mean);
-    sample_.lowest = sample_.count == 1 ? value : std::min(sample_.lowest, value);
-    sample_.highest = sample_.count == 1 ? value : std::max(sample_.highest, value);
+    moments_.add(value);
+    sample_.lowest = moments_.count == 1 ? value : std::min(sample_.lowest, value);
+    sample_.highest = moments_.count == 1 ? value : std::max(sample_.highest, value);
   }
   void miss(model::Validity why) {
     ++sample_.invalid;
@@ -41,13 +39,15 @@ class Gathering {
   }
   [[nodiscard]] Sample result() const {
     Sample sample = sample_;
-    if (sample.count > 1) sample.deviation = std::sqrt(squares_ / static_cast<double>(sample.count - 1));
+    sample.count = moments_.count;
+    sample.mean = moments_.mean;
+    sample.deviation = moments_.deviation();
     return sample;
   }
 
  private:
   Sample sample_;
-  double squares_ = 0;
+  Moments moments_;
 };
 
 struct ChannelGathering {

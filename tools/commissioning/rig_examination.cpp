@@ -317,10 +317,7 @@ std::unique_ptr<drivers::GpioLines> examine_gpio(const rig::RigFile& rig, Findin
   auto lines = drivers::open_gpio_lines(rig.gpio->lines);
   if (!lines) {
     const drivers::GpioFailure& failure = lines.error();
-    const document::Problem& place = rig.gpio->places[failure.line];
-    findings.fail("gpio",
-                  fmt::format("{}:{}:{}: {}", place.file, place.at.line, place.at.column, failure.message),
-                  failure.hint);
+    findings.fail("gpio", place_of(rig.gpio->places[failure.line]) + ": " + failure.message, failure.hint);
     return nullptr;
   }
   for (const drivers::GpioLineSettings& line : rig.gpio->lines) {

@@ -26,6 +26,8 @@ struct StructureFit {
 
 struct FitEffort {
   int most_iterations = 40;
+  /// The fit ends after a step that reduces the sum of squares by less than this share, or by less than 1 %
+  /// of the noise variance. Such a step moves no parameter by more than about 0.1 standard errors.
   double tolerance = 1e-8;
   bool hold_starts = false;  ///< true: the initial state of each record stays the same as at the start point
                              ///< of the fit
