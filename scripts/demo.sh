@@ -5,16 +5,25 @@
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
-# Succeeds if $out is the output of a demo. The output of a demo contains a marker file. The output of earlier versions
-# has no marker file, but contains runs/ and pick_stone.svg.
+# The output of a demo contains a marker file. The output of earlier versions has no marker file. It contains only names
+# that the demo writes, among them runs/ and pick_stone.svg. If an earlier version stopped early, it left only runs/.
 marker=.softgrip-demo
-is_of_a_demo() { [ -f "$out/$marker" ] || { [ -d "$out/runs" ] && [ -f "$out/pick_stone.svg" ]; }; }
-if [ -e "$out" ] && ! is_of_a_demo; then
-  if [ ! -d "$out" ] || [ -n "$(ls -A "$out")" ]; then
-    echo "demo.sh: $out exists, but is not the output of a demo, and its content would be deleted. Name a new folder." >&2
-    exit 2
-  fi
-fi
+content() { find "$out" -mindepth 1 -maxdepth 1 "$@"; }
+is_of_a_demo() {
+  [ ! -f "$out/$marker" ] || return 0
+  local name others=()
+  for name in runs pick_stone.svg {tp1,steps,sp2,second_tp2,second_sp1,aged_tp2,aged_sp1}.csv identified diagnosis baseline \
+    changed grips health; do
+    others+=(! -name "$name")
+  done
+  [ -d "$out/runs" ] && [ -z "$(content "${others[@]}")" ] && { [ -f "$out/pick_stone.svg" ] || [ -z "$(content ! -name runs)" ]; }
+}
+require_deletable() {
+  if [ ! -e "$out" ] || { [ -d "$out" ] && { [ -z "$(content)" ] || is_of_a_demo; }; }; then return; fi
+  echo "demo.sh: $out exists, but is not the output of a demo, and its content would be deleted. Name a new folder." >&2
+  exit 2
+}
+require_deletable
 # Updates an existing build. If no build exists, builds the four programs that the demo needs, without debug
 # information.
 build=build/release
@@ -31,7 +40,11 @@ else
 fi
 python3 tests/repository/libraries.py --build "$build" >>"$build/demo.log" || { tail -n 4 "$build/demo.log" >&2; exit 1; }
 
-rm -rf "$out" && mkdir -p "$out/runs" && touch "$out/$marker"
+require_deletable  # again, because the build takes minutes
+# The marker exists during the whole deletion, so that the next demo accepts the folder after an interruption.
+mkdir -p "$out" && touch "$out/$marker"
+content ! -name "$marker" -exec rm -rf {} +
+mkdir "$out/runs"
 work=$(mktemp -d) runs=$out/runs
 . scripts/rig_session.sh
 web_pid=

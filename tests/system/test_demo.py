@@ -1,6 +1,7 @@
-"""Tests which output folders scripts/demo.sh accepts. A copy of the script runs with a replaced scripts/packages.sh that
-ends the demo before the build."""
+"""Tests which output folders scripts/demo.sh accepts, and how it deletes their content. A copy of the script runs with
+replaced scripts and programs, which end the demo before the build or after the deletion."""
 
+import os
 import pathlib
 import shutil
 import subprocess
@@ -8,7 +9,7 @@ import tempfile
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-ACCEPTED = 77  # exit code of the replaced scripts/packages.sh
+ACCEPTED = 77  # exit code of the replaced script that ends the demo
 
 
 class OutputFolder(unittest.TestCase):
@@ -22,7 +23,23 @@ class OutputFolder(unittest.TestCase):
         self.out = self.at / "out"
 
     def demo(self, *arguments):
-        return subprocess.run(["bash", self.at / "tree/scripts/demo.sh", *arguments], capture_output=True, text=True)
+        return subprocess.run(["bash", self.at / "tree/scripts/demo.sh", *arguments], capture_output=True, text=True,
+                              env={**os.environ, "PATH": f"{self.at / 'bin'}:{os.environ['PATH']}"})
+
+    def program(self, name, text):
+        (self.at / "bin").mkdir(exist_ok=True)
+        (self.at / "bin" / name).write_text(f"#!/bin/bash\n{text}\n")
+        (self.at / "bin" / name).chmod(0o755)
+
+    def end_after_deletion(self):
+        """Replaces the build, so that the demo ends after the deletion and before its first step."""
+        (self.at / "tree/scripts/packages.sh").write_text("")
+        self.program("cmake", "mkdir -p build/demo && touch build/demo/CMakeCache.txt")
+        self.program("python3", "")
+        (self.at / "tree/scripts/rig_session.sh").write_text(f"exit {ACCEPTED}\n")
+
+    def names(self):
+        return sorted(path.name for path in self.out.iterdir())
 
     def test_a_folder_with_other_files_is_refused(self):
         (self.out / "runs").mkdir(parents=True)
@@ -47,10 +64,48 @@ class OutputFolder(unittest.TestCase):
         self.assertEqual(self.demo(self.out).returncode, ACCEPTED)
         (self.out / ".softgrip-demo").touch()
         self.assertEqual(self.demo(self.out).returncode, ACCEPTED)
-        (self.out / ".softgrip-demo").unlink()
-        (self.out / "runs").mkdir()
+
+    def test_an_output_of_an_earlier_version_is_accepted(self):
+        (self.out / "runs").mkdir(parents=True)
+        self.assertEqual(self.demo(self.out).returncode, ACCEPTED, "an earlier version stopped early")
+        for name in ("baseline", "health"):
+            (self.out / name).mkdir()
+        (self.out / "tp1.csv").touch()
+        self.assertEqual(self.demo(self.out).returncode, 2, "no picture: this can be the folder of another program")
         (self.out / "pick_stone.svg").touch()
-        self.assertEqual(self.demo(self.out).returncode, ACCEPTED, "an earlier version has written this folder")
+        self.assertEqual(self.demo(self.out).returncode, ACCEPTED)
+        for name in ("thesis.txt", ".git", "runs 2"):
+            (self.out / name).touch()
+            self.assertEqual(self.demo(self.out).returncode, 2, name)
+            (self.out / name).unlink()
+
+    def test_an_old_output_is_deleted(self):
+        self.end_after_deletion()
+        (self.out / "runs/old").mkdir(parents=True)
+        for name in (".softgrip-demo", "pick_stone.svg", ".hidden"):
+            (self.out / name).touch()
+        done = self.demo(self.out)
+        self.assertEqual(done.returncode, ACCEPTED, done.stderr)
+        self.assertEqual(self.names(), [".softgrip-demo", "runs"])
+        self.assertEqual(list((self.out / "runs").iterdir()), [])
+
+    def test_a_demo_that_is_interrupted_in_the_deletion_can_be_repeated(self):
+        self.end_after_deletion()
+        (self.out / "runs").mkdir(parents=True)
+        for name in (".softgrip-demo", "pick_stone.svg", "later_version.csv"):
+            (self.out / name).touch()
+        self.program("rm", f"/bin/rm -rf '{self.out}/pick_stone.svg'; exit 1")
+        self.assertNotIn(self.demo(self.out).returncode, (0, 2, ACCEPTED))
+        self.assertNotIn("pick_stone.svg", self.names())
+        (self.at / "bin/rm").unlink()
+        self.assertEqual(self.demo(self.out).returncode, ACCEPTED)
+        self.assertEqual(self.names(), [".softgrip-demo", "runs"])
+
+    def test_a_folder_that_is_filled_during_the_build_is_not_deleted(self):
+        self.end_after_deletion()
+        (self.at / "tree/scripts/packages.sh").write_text(f"mkdir '{self.out}'; touch '{self.out}/thesis.txt'\n")
+        self.assertEqual(self.demo(self.out).returncode, 2)
+        self.assertEqual(self.names(), ["thesis.txt"])
 
 
 if __name__ == "__main__":
