@@ -1,8 +1,5 @@
 """Shows a board driver. The board of this example answers "SET 12.500" with "POS 2.500". A thread of the program simulates
-the board.
-
-board_driver.py writes three commands and prints the readings.
-"""
+the board. board_driver.py writes three commands and prints the readings."""
 
 import socket
 import threading
@@ -28,7 +25,10 @@ class LineBoard(softgrip.Board):
 
     def connect(self, deadline: float) -> None:
         self.close()
-        self._line = self._dial()
+        try:
+            self._line = self._dial()
+        except OSError as error:
+            raise softgrip.BusError("disconnected", str(error)) from error
 
     def close(self) -> None:
         if self._line is not None:
@@ -38,12 +38,17 @@ class LineBoard(softgrip.Board):
     def exchange(self, commands: Sequence[float], deadline: float) -> Sequence[softgrip.Reading]:
         if self._line is None:
             raise softgrip.BusError("disconnected", "no connection")
-        self._line.settimeout(deadline)
+        end, reply = time.monotonic() + deadline, b""
         try:
+            self._line.settimeout(deadline)
             self._line.sendall(f"SET {commands[0]:.3f}\n".encode())
-            with self._line.makefile("r") as replies:
-                reply = replies.readline()
-            if not (reply.startswith("POS ") and reply.endswith("\n")):
+            while len(reply) < 64 and not reply.endswith(b"\n"):
+                self._line.settimeout(max(end - time.monotonic(), 1e-6))
+                received = self._line.recv(64)
+                if not received:
+                    raise ConnectionError("the board closed the connection")
+                reply += received
+            if not (reply.startswith(b"POS ") and reply.endswith(b"\n")):
                 raise ValueError(f"{reply!r} is not a position")
             displacement = float(reply[4:])
         except (OSError, ValueError) as error:
@@ -53,15 +58,11 @@ class LineBoard(softgrip.Board):
         self._sequence += 1
         return [softgrip.Reading(displacement, sampled_at=time.monotonic(), sequence=self._sequence)]
 
-    def describe(self) -> str:
-        return "line board"
-
 
 def device(line: socket.socket) -> None:
-    with line, line.makefile("rw") as text:
+    with line, line.makefile("rw", buffering=1) as text:
         for command in text:
             text.write(f"POS {0.2 * float(command.split()[1]):.3f}\n")
-            text.flush()
 
 
 def dial() -> socket.socket:

@@ -19,17 +19,33 @@ cmake -S "$source/examples/cpp" -B examples -DCMAKE_PREFIX_PATH="$work/installed
 cmake --build examples -j 2 >build.log 2>&1 || { cat build.log; fail "build"; }
 run_examples examples "$build/tools/softgrip" "$build/daemon/softgripd"
 
-# A response that arrives after its deadline must not become the reading of a later command.
+# A late response must not become the reading of a later command. Each failure has a status and a reason.
 libraries=$work/$(dirname "$(find installed -name libsoftgrip.so)")
-c++ -std=c++20 -I installed/include -I "$source/examples/cpp" "$source/tests/library/late_response.cpp" -L "$libraries" \
-  -Wl,-rpath,"$libraries" -lsoftgrip -pthread -o late_response
-./late_response >late.txt
-diff - late.txt <<'END' || fail "board_driver.cpp uses a late response, or does not work after it"
+c++ -std=c++20 -I installed/include -I "$source/examples/cpp" "$source/tests/library/board_driver_faults.cpp" -L "$libraries" \
+  -Wl,-rpath,"$libraries" -lsoftgrip -pthread -o board_driver_faults
+./board_driver_faults >faults.txt
+diff - faults.txt <<'END' || fail "board_driver.cpp handles a failure of its board wrongly"
+late responses
+connect: ok
 5 kPa: ok, 1.0 mm
-10 kPa: timed_out, 1.0 mm
-20 kPa: disconnected, 1.0 mm
+10 kPa: timed_out, -1.0 mm (Connection timed out)
+20 kPa: disconnected, -1.0 mm (Transport endpoint is not connected)
 connect: ok
 30 kPa: ok, 6.0 mm
+signals during an exchange
+40 kPa: ok, 8.0 mm
+10 kPa: timed_out, -1.0 mm (Connection timed out)
+one byte per 0.3 s, a closed connection, an error, and no board
+connect: ok
+1 kPa: timed_out, -1.0 mm (Connection timed out)
+connect: ok
+1 kPa: disconnected, -1.0 mm (Connection reset by peer)
+connect: ok
+1 kPa: bad_reply, -1.0 mm (Bad message)
+connect: disconnected (Connection refused)
+a board that permits one client
+connect: ok
+connect: ok
 END
 
 if command -v pkg-config >/dev/null; then

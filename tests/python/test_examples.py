@@ -52,6 +52,13 @@ class Examples(unittest.TestCase):
             self.check_grip(at)
         self.assertEqual(self.ran, {path.name for path in EXAMPLES.glob("*.py")})
 
+    def run_driver(self, code):
+        """Returns the output lines of a program that imports examples/python/board_driver.py."""
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd=EXAMPLES,
+                              env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.splitlines()
+
     def test_the_board_driver_uses_no_late_response(self):
         code = """
 import socket, threading
@@ -84,9 +91,50 @@ for pressure in (5, 10, 20, None, 30):
         print(pressure, error.status)
 board.close()
 """
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd=EXAMPLES,
-                              env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
-        self.assertEqual(done.stdout.splitlines(), ["5 1.0", "10 timed_out", "20 disconnected", "30 6.0"], done.stderr)
+        self.assertEqual(self.run_driver(code), ["5 1.0", "10 timed_out", "20 disconnected", "30 6.0"])
+
+    def test_the_board_driver_reports_the_kind_of_each_failure(self):
+        code = """
+import socket, threading, time
+import board_driver, softgrip
+def refused():
+    raise ConnectionRefusedError("no board")
+def slow(line):
+    for byte in b"POS 2.000\\n":
+        time.sleep(0.15)
+        try:
+            line.sendall(bytes([byte]))
+        except OSError:
+            return
+def closed(line):
+    line.recv(64)
+    line.close()
+def other(line):
+    line.sendall(b"ERR 5\\n")
+def endless(line):
+    try:
+        while True:
+            line.sendall(b"POS 2.0" * 20)
+    except OSError:
+        return
+def dial_of(device):
+    def dial():
+        here, there = socket.socketpair()
+        threading.Thread(target=device, args=[there], daemon=True).start()
+        return here
+    return dial
+for dial in (refused, dial_of(slow), dial_of(closed), dial_of(other), dial_of(endless)):
+    board = board_driver.LineBoard(dial)
+    begin = time.monotonic()
+    try:
+        board.connect(deadline=1)
+        print(board.exchange([10], deadline=0.4))
+    except softgrip.BusError as error:
+        print(error.status, "detail" if error.detail else "no detail", time.monotonic() - begin < 1)
+"""
+        self.assertEqual(self.run_driver(code), [
+            "disconnected detail True", "timed_out detail True", "disconnected detail True", "bad_reply detail True",
+            "bad_reply detail True"])
 
     def check_workflow(self, at):
         if not shutil.which("snakemake"):
