@@ -207,6 +207,21 @@ std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t
   return records;
 }
 
+std::vector<Record> first_samples(std::vector<Record> records, std::size_t most) {
+  std::size_t all = 0;
+  for (const Record& record : records) all += record.size();
+  if (all <= most) return records;
+  for (Record& record : records) {
+    const std::size_t kept = std::min(std::max<std::size_t>(record.size() * most / all, 2), record.size());
+    for (auto* column : {&record.time_s, &record.duration_s, &record.drive_kpa, &record.reading_mm,
+                         &record.temperature_c, &record.supply_kpa}) {
+      if (!column->empty()) column->resize(kept);
+    }
+    record.readings = finite_count(record.reading_mm);
+  }
+  return records;
+}
+
 Log thinned_log(const Log& log, std::size_t stride) {
   Log kept = log;
   const auto thin = [stride](auto& values) {

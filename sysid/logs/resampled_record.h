@@ -50,6 +50,9 @@ inline constexpr std::size_t enough_readings = 40'000;
 /// Keeps all samples, but removes all readings of each record except every k-th reading, so that about `most`
 /// readings or fewer remain in total.
 [[nodiscard]] std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most);
+/// Shortens all records by the same factor so that at most about `most` samples remain in total. Keeps the
+/// first samples of each record, and at least two.
+[[nodiscard]] std::vector<Record> first_samples(std::vector<Record> records, std::size_t most);
 /// Returns a log with every `stride`-th sample, beginning with the first.
 /// @param stride  at least 1.
 [[nodiscard]] Log thinned_log(const Log& log, std::size_t stride);

@@ -20,6 +20,7 @@
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/identification/uncertainty.h"
 #include "sysid/limits/limits.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -37,6 +38,9 @@ constexpr double band_stays = 5e-4, rest_stays = 0.01;
 /// Number of rounds after which the jump distances must scatter less than random distances. If they do not,
 /// the valve has no dead band.
 constexpr int rounds_of_chance = 6;
+/// Number of samples of a first search. If these samples contain enough jumps and no stick-slip motion, the
+/// other samples are not searched.
+constexpr std::size_t samples_of_first_search = 10'000;
 /// Ratio of two sums of squares above which the difference cannot be a rounding error.
 constexpr double clearly_more = 1 + 1e-9;
 
@@ -119,10 +123,16 @@ std::vector<Record> driven(const std::vector<Record>& records, const ValvePaths&
   return all;
 }
 
-/// Estimates the stick-slip motion by iteration, starting from a value of the band. Returns nullopt if there
+/// Result of a search for a stick-slip motion.
+struct Attempt {
+  std::optional<StickSlip> found;
+  std::size_t jumps = 0;  ///< number of jumps whose jump distance the readings resolve
+};
+
+/// Estimates the stick-slip motion by iteration, starting from a value of the band. Finds nothing if there
 /// are too few jumps or if the jump distances scatter like random distances.
-std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, const StructureFit& behind,
-                                         double band_kpa, double resolution_kpa, unsigned threads) {
+Attempt stick_slip_from(const std::vector<Record>& records, const StructureFit& behind, double band_kpa,
+                        double resolution_kpa, unsigned threads) {
   StickSlip found;
   found.band_kpa = band_kpa;
   found.fit = behind;
@@ -134,7 +144,7 @@ std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, con
     measure_band(distances, found);
     if (found.jumps < limits::fewest_events ||
         (round >= rounds_of_chance && found.scatter > scatter_of_chance))
-      return std::nullopt;
+      return {std::nullopt, found.jumps};
     found.records = driven(records, paths);
     found.fit = fit_structure(found.records, behind.causes, found.fit.point);
     if (std::abs(found.band_kpa - before_kpa) < band_stays * before_kpa &&
@@ -142,7 +152,8 @@ std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, con
       break;
   }
   static_cast<Band&>(found) = band_of_jumps(distances);
-  return found;
+  const std::size_t jumps = found.jumps;
+  return {std::move(found), jumps};
 }
 
 /// Returns the pressure change that moves the finger by half the noise [kPa].
@@ -153,6 +164,36 @@ double resolution_of(const Scales& scales, double noise_mm) {
 bool is_a_band(const StickSlip& found, double resolution_kpa) {
   return found.scatter <=
          std::min(std::hypot(most_scatter, resolution_kpa / found.band_kpa), most_scatter_in_all);
+}
+
+/// Returns true if a motion with a constant band was found that leaves a smaller error than `behind`.
+bool explains(const Attempt& attempt, const StructureFit& behind, double resolution_kpa) {
+  return attempt.found && is_a_band(*attempt.found, resolution_kpa) &&
+         attempt.found->fit.mean_square_mm2 < behind.mean_square_mm2;
+}
+
+/// Searches for a stick-slip motion, starting from the trial value of the band with the smallest tracking
+/// error.
+Attempt search_bands(const std::vector<Record>& records, const StructureFit& behind,
+                     const std::vector<double>& bands, double resolution_kpa, unsigned threads) {
+  const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
+  // The start value may be below the true band. A path can then reach nearly every valve position by short
+  // jumps. As long as the model behind the valve is inaccurate, the error of this path is smaller than that
+  // of the true path. Therefore a second search starts at twice the band.
+  std::array<Attempt, 2> attempts;
+  parallel_for(attempts.size(), threads, [&](std::size_t i) {
+    attempts[i] = stick_slip_from(records, behind, i == 0 ? band_kpa : 2 * band_kpa, resolution_kpa, threads);
+  });
+  for (Attempt& attempt : attempts) {
+    if (explains(attempt, behind, resolution_kpa)) return std::move(attempt);
+  }
+  return {std::nullopt, std::max(attempts[0].jumps, attempts[1].jumps)};
+}
+
+std::size_t sample_count(const std::vector<Record>& records) {
+  std::size_t count = 0;
+  for (const Record& record : records) count += record.size();
+  return count;
 }
 
 /// Returns the cause "dead band" with only one form, the smooth form. The smooth form is the mean of all
@@ -300,26 +341,25 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const double resolution_kpa = resolution_of(scales, noise_mm);
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
-  const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  // The start value may be below the true band. A path can then reach nearly every valve position by short
-  // jumps. As long as the model behind the valve is inaccurate, the error of this path is smaller than that
-  // of the true path. Therefore a second search starts at twice the band.
-  std::array<std::optional<StickSlip>, 2> found;
-  parallel_for(found.size(), threads, [&](std::size_t i) {
-    found[i] = stick_slip_from(records, behind, i == 0 ? band_kpa : 2 * band_kpa, resolution_kpa, threads);
-  });
-  const auto explains = [&](const std::optional<StickSlip>& each) {
-    return each && is_a_band(*each, resolution_kpa) && each->fit.mean_square_mm2 < behind.mean_square_mm2;
-  };
-  const auto first = std::find_if(found.begin(), found.end(), explains);
-  return first == found.end() ? std::nullopt : std::move(*first);
+  const std::vector<Record> first = first_samples(records, samples_of_first_search);
+  if (sample_count(first) < sample_count(records)) {
+    const StructureFit behind_first = evaluate_structure(first, behind.causes, behind.point);
+    const Attempt attempt = search_bands(first, behind_first, bands, resolution_kpa, threads);
+    if (attempt.found) {
+      Attempt all =
+          stick_slip_from(records, attempt.found->fit, attempt.found->band_kpa, resolution_kpa, threads);
+      return explains(all, behind, resolution_kpa) ? std::move(all.found) : std::nullopt;
+    }
+    if (attempt.jumps >= limits::fewest_events) return std::nullopt;
+  }
+  return search_bands(records, behind, bands, resolution_kpa, threads).found;
 }
 
 std::optional<StickSlip> stick_slip_without(const std::vector<Record>& records, const StickSlip& found,
                                             const Cause& cause, double noise_mm, unsigned threads) {
   const double resolution_kpa = resolution_of(scales_of(records), noise_mm);
   const StructureFit rest = fit_without_cause(found.records, found.fit, cause);
-  auto again = stick_slip_from(records, rest, found.band_kpa, resolution_kpa, threads);
+  auto again = stick_slip_from(records, rest, found.band_kpa, resolution_kpa, threads).found;
   if (!again || !is_a_band(*again, resolution_kpa)) return std::nullopt;
   return again;
 }

@@ -229,6 +229,24 @@ TEST(FewerReadings, KeepsEveryKthReadingAndAllSamples) {
   EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "no sample must be omitted";
 }
 
+TEST(FirstSamples, ShortensAllRecordsByTheSameFactor) {
+  Record longer = ramp(), shorter = ramp();
+  shorter = first_samples({shorter}, shorter.size() / 4).front();
+  EXPECT_EQ(shorter.size(), longer.size() / 4);
+  shorter.reading_mm[1] = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t all = longer.size() + shorter.size();
+  const auto first = first_samples({longer, shorter}, all / 5);
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_NEAR(static_cast<double>(first[0].size()), static_cast<double>(longer.size()) / 5, 1);
+  EXPECT_NEAR(static_cast<double>(first[1].size()), static_cast<double>(shorter.size()) / 5, 1);
+  EXPECT_EQ(first[1].readings, first[1].size() - 1);
+  EXPECT_EQ(first[0].sample_time_s, longer.sample_time_s);
+  EXPECT_TRUE(std::equal(first[0].drive_kpa.begin(), first[0].drive_kpa.end(), longer.drive_kpa.begin()));
+  EXPECT_EQ(first[0].duration_s.size(), first[0].size());
+  EXPECT_EQ(first_samples({longer}, longer.size()).front().size(), longer.size());
+  EXPECT_EQ(first_samples({longer, shorter}, 0)[1].size(), 2U);
+}
+
 TEST(ThinnedLog, AllColumnsHaveTheSameSamples) {
   Log log;
   for (int i = 0; i < 8; ++i) {

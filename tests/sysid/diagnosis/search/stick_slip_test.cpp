@@ -77,6 +77,23 @@ TEST(StickSlip, FindsTheBandOfAStickSlipValve) {
   }
 }
 
+// Of more than 10,000 samples, only the first part is searched at the beginning.
+TEST(StickSlip, FindsTheBandInAllSamplesOfLongRecords) {
+  constexpr double band_kpa = 3.1;
+  const auto valve = [&](double p, double u, double) { return sticking(band_kpa, p, u); };
+  std::vector<Record> quiet_at_first = known_campaign(5);
+  for (Record& r : quiet_at_first) std::fill_n(r.drive_kpa.begin(), 2000, 0.0);
+  for (const auto& commands : {known_campaign(5), quiet_at_first}) {
+    const auto records = answered(commands, valve, 17);
+    const auto found = find_stick_slip(records, behind(records), noise_mm, 2);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->band_kpa, band_kpa, 0.02 * band_kpa);
+    EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
+    ASSERT_EQ(found->records.size(), 5U);
+    for (const Record& r : found->records) EXPECT_EQ(r.size(), 3000U);
+  }
+}
+
 // The delay is 17.5 samples long, so a jump of the valve is visible in the readings only after 17 or 18
 // samples.
 TEST(StickSlip, StickBandIsFoundDespiteALongDelay) {
