@@ -21,28 +21,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& cause,
                 const StructureFit& with) {
   const model::Model& model = with.point.model;
-  const std::size_t position = *position_of(model, cause);
   const FitSpace space = structure_space(records, model, with.causes);
   const auto residuals = residuals_for(records, space);
   const std::vector<double> z = space.z(with.point);
-  const Uncertainty uncertainty = uncertainty_at(*residuals, z, infinity);
-  double farthest = -infinity;
-  for (std::size_t j = 0; j < space.size(); ++j) {
-    const FreeParameter& free = space.free()[j];
-    if (free.kind != FreeParameter::Kind::model || uncertainty.at_bound[j]) continue;
-    const model::ParameterPlace place = model::place_of(model, free.flat_index);
-    if (place.block != position) continue;
-    const model::ParameterSpec& spec = model::catalogue()[model.blocks[position].type].spec(place.value);
-    const double deviation = uncertainty.deviation(j);
-    if (!std::isfinite(spec.neutral) || !(deviation > 0)) continue;
-    const double half = uncertainty.quantile * deviation;
-    const double distance = std::abs(z[j] - free.to_z(spec.neutral)) / deviation;
-    if (!(distance > farthest)) continue;
-    farthest = distance;
-    claim.size =
-        Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    claim.largest_size = largest_possible_size(campaign_size(records), spec.unit, spec.neutral);
-  }
+  const auto size =
+      size_of(model, *position_of(model, cause), space, z, uncertainty_at(*residuals, z, infinity));
+  if (!size) return;
+  claim.size = size->interval;
+  claim.largest_size = largest_possible_size(campaign_size(records), size->unit, size->neutral);
 }
 
 /// Returns one value per reading, in the order of the records: true if the cause must have an effect on the
@@ -82,18 +68,41 @@ PairedLosses losses_there(const std::vector<Record>& records, const std::vector<
 
 }  // namespace
 
+std::optional<BlockSize> size_of(const model::Model& model, std::size_t position, const FitSpace& space,
+                                 std::span<const double> z, const Uncertainty& uncertainty) {
+  std::optional<BlockSize> size;
+  double farthest = -infinity;
+  for (std::size_t j = 0; j < space.size(); ++j) {
+    const FreeParameter& free = space.free()[j];
+    if (free.kind != FreeParameter::Kind::model || uncertainty.at_bound[j]) continue;
+    const model::ParameterPlace place = model::place_of(model, free.flat_index);
+    if (place.block != position) continue;
+    const model::ParameterSpec& spec = model::catalogue()[model.blocks[position].type].spec(place.value);
+    const double deviation = uncertainty.deviation(j);
+    if (!std::isfinite(spec.neutral) || !(deviation > 0)) continue;
+    const double half = uncertainty.quantile * deviation;
+    const double distance = std::abs(z[j] - free.to_z(spec.neutral)) / deviation;
+    if (!(distance > farthest)) continue;
+    farthest = distance;
+    size = {{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral},
+            spec.neutral,
+            spec.unit};
+  }
+  return size;
+}
+
 Veto veto_of(const std::vector<Record>& records, const Cause& cause, const StructureFit& with,
              const StructureFit& without, const LeftOutLosses& left_out, std::uint64_t seed) {
   Claim claim;
   const std::vector<bool> required = required_readings(records, cause.appears, without);
   claim.condition_met = is_met(required);
   if (!claim.condition_met) return veto_of(claim);
-  claim_size(claim, records, cause, with);
+  const bool is_free = has_free_form(with.point.model, cause);
+  if (!is_free) claim_size(claim, records, cause, with);
   claim.error_without = std::sqrt(without.mean_square_mm2);
   claim.error_with = std::sqrt(with.mean_square_mm2);
   claim.shown_there = is_better(compare(losses_there(records, required, with, without), 0, seed));
-  if (const Veto veto = veto_of(claim); veto != Veto::none || has_free_form(with.point.model, cause))
-    return veto;
+  if (const Veto veto = veto_of(claim); veto != Veto::none || is_free) return veto;
   claim.predicts_worse = !(rmse_mm(left_out(with)) < rmse_mm(left_out(without)));
   return veto_of(claim);
 }

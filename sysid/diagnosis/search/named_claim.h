@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/evidence/veto.h"
+#include "sysid/identification/uncertainty.h"
 
 namespace softgrip::sysid {
 
@@ -15,13 +19,28 @@ namespace softgrip::sysid {
 /// loss, the structure is fitted to the other units.
 using LeftOutLosses = std::function<BlockLosses(const StructureFit&)>;
 
+/// Size of the effect of a block: the distance of one of its parameters from its neutral value. The parameter
+/// is the one with the largest distance in standard deviations.
+struct BlockSize {
+  Interval interval;  ///< 95 % interval of the distance
+  double neutral = 0;
+  std::string_view unit;
+};
+/// Returns the size of a block. Returns nullopt if no parameter of the block has a standard deviation and a
+/// neutral value.
+/// @param position  position of the block in the model.
+/// @param space  free parameters of a fit, with the coordinates `z` and the covariance `uncertainty`.
+[[nodiscard]] std::optional<BlockSize> size_of(const model::Model& model, std::size_t position,
+                                               const FitSpace& space, std::span<const double> z,
+                                               const Uncertainty& uncertainty);
+
 /// Returns the first condition (sysid/evidence/veto.h) that a cause does not meet. Returns Veto::none if the
 /// cause may be named.
 ///
-/// The size of a cause is the distance of one parameter from its neutral value. The parameter is the one with
-/// the largest distance in standard deviations. The size is not compared with a range if the neutral value
-/// has no meaning, for example for a limit. The predictions of a free form are not tested, because a free
-/// form cannot predict units to which it was not fitted.
+/// The size of a cause is the size of its block. The size is not compared with a range if the neutral value
+/// has no meaning, for example for a limit. Two conditions are not tested for a free form. A free form cannot
+/// predict units to which it was not fitted. It has no single size: if the readings vary at random, each of
+/// its parameters is uncertain, although the variation is certain.
 /// @param with  fit of the structure with the cause to the records.
 /// @param without  fit of the structure without the cause to the records.
 /// @param seed  seed of the bootstrap.

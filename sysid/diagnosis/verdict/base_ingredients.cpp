@@ -16,6 +16,7 @@
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "model/registry.h"
 #include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
@@ -26,6 +27,7 @@
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
+#include "sysid/diagnosis/search/named_claim.h"
 #include "sysid/diagnosis/search/slack.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/limits/limits.h"
@@ -118,6 +120,14 @@ class Labeller {
     return named;
   }
 
+  /// Returns true if the size of a component is certain, or if it cannot be computed.
+  [[nodiscard]] bool is_certain(const NamedCause& named) const {
+    const auto position = model::position_of(at_.point.model, named.block_type);
+    if (!position) return true;
+    const auto size = size_of(at_.point.model, *position, at_.space, at_.z, at_.uncertainty);
+    return !size || excludes(size->interval, 0);
+  }
+
  private:
   const StructureTrial& chosen_;
   const BaseQuestion& question_;
@@ -173,7 +183,8 @@ void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>&
     NamedCause named = labeller.name(finding, *without);
     if (named.gain_mm2.value < least_mm2) continue;
     if (is_among(found.named, named.cause) || is_among(found.possible, named.cause)) continue;
-    (named.inclusion >= limits::probability ? found.named : found.possible).push_back(std::move(named));
+    const bool is_sure = named.inclusion >= limits::probability && labeller.is_certain(named);
+    (is_sure ? found.named : found.possible).push_back(std::move(named));
   }
   auto latency = latency_of(ablation, labeller, found);
   if (!latency || latency->gain_mm2.value < least_mm2 || latency->inclusion < limits::probability) return;

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "base/random.h"
 #include "sysid/diagnosis/search/search.h"
@@ -86,6 +89,19 @@ TEST(NamedClaim, FailsIfTheRequiredConditionIsNeverMet) {
       p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;
   }
   EXPECT_EQ(drift.veto(), Veto::not_tested);
+}
+
+// The offset of the sensor moves at random. Each parameter of a piecewise linear drift is then uncertain,
+// although the drift is certain.
+TEST(NamedClaim, RandomDriftMeetsAllConditions) {
+  std::vector<double> walk_mm{0};
+  for (std::uint64_t i = 0; i < 6000; ++i) walk_mm.push_back(walk_mm.back() + 0.02 * normal_at(3, i));
+  Case drift("sensor_drift", [&](double y_mm, double t_s) {
+    return y_mm + walk_mm[static_cast<std::size_t>(std::lround(t_s / 0.02))];
+  });
+  ASSERT_TRUE(has_free_form(drift.with.point.model, drift.cause));
+  EXPECT_EQ(drift.veto(), Veto::none);
+  EXPECT_EQ(drift.asked, 0) << "a free form cannot predict other runs";
 }
 
 TEST(NamedClaim, FailsIfTheEffectIsAbsentWhereRequired) {
