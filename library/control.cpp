@@ -220,7 +220,11 @@ void Feedforward::start(double command_kpa, double reference_ahead) noexcept {
 
 FeedforwardStep Feedforward::step(double reference_ahead) noexcept {
   Parts& parts = *parts_;
-  if (!std::isfinite(reference_ahead)) return {parts.last_kpa, true};
+  if (!std::isfinite(reference_ahead)) {
+    parts.feedforward.hold();
+    parts.time_s += parts.tick_s;
+    return {parts.last_kpa, true};
+  }
   const control::Reference reference = parts.reference(reference_ahead);
   const control::FeedforwardStep step =
       parts.feedforward.step({.reference = &reference, .time_s = parts.time_s});

@@ -28,7 +28,6 @@ ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
 [[gnu::flatten]] ActuatorInverse::Solution ActuatorInverse::solve(double displacement_mm, double lower_kpa,
                                                                   double upper_kpa) const noexcept {
   using Number = model::Dual<double>;
-  if (!std::isfinite(displacement_mm)) return {std::clamp(past_kpa_[0], lower_kpa, upper_kpa), false};
   const double guess = 3 * (past_kpa_[0] - past_kpa_[1]) + past_kpa_[2];
   double x = std::clamp(guess, lower_kpa, upper_kpa);
   double lower = lower_kpa;

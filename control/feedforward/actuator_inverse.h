@@ -25,9 +25,8 @@ class ActuatorInverse {
     bool reached = true;  ///< false: the bracket contains no solution, so `pressure_kpa` is the nearest bound
   };
   /// Returns the pressure in [lower_kpa, upper_kpa] for which the output of the load is `displacement_mm` at
-  /// the end of the next tick. The error of the displacement is at most 1e-11 mm. If `displacement_mm` is not
-  /// finite, returns the pressure of the last tick within the bracket, with `reached` = false. Does not
-  /// change the state.
+  /// the end of the next tick. The error of the displacement is at most 1e-11 mm. `displacement_mm` must be
+  /// finite. Does not change the state.
   [[nodiscard]] Solution solve(double displacement_mm, double lower_kpa, double upper_kpa) const noexcept;
 
   /// Advances by one tick in which the pressure changes linearly to `pressure_kpa`.

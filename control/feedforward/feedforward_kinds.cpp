@@ -40,12 +40,6 @@ model::Model bouc_wen_of(const model::Model& model) {
   });
 }
 
-/// Returns the difference of the settled displacements at the two ends of the pressure range [mm].
-double span_mm(const model::Model& model, const LimitSettings& limits) {
-  return std::abs(settled_line(model, limits).gain_mm_per_kpa) *
-         (limits.pressure_max_kpa - limits.pressure_min_kpa);
-}
-
 /// Returns the displacement that the model must reach at `time_s`: the reference within the limits, minus the
 /// offset [mm].
 double wanted_mm(const LimitSettings& limits, const FeedforwardQuery& query, double time_s) noexcept {
@@ -78,8 +72,7 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
                                                          .value_or(std::numeric_limits<double>::max()))),
       valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
-      inverse_(body_of(model), tick_s),
-      jumps_(tick_s, span_mm(model, limits)) {
+      inverse_(body_of(model), tick_s) {
   // Estimates the speed and the acceleration of the finger at the slew limit. The immediate response to
   // pressure determines the speed, and the creep determines the acceleration.
   const model::Chain<double> body(body_of(model), {}, tick_s);
@@ -123,7 +116,7 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
                                  double command_kpa) noexcept {
   inverse_.take_over(running.body(), running.pressure_kpa());
   valve_.take_over(running.valve());
-  command_kpa_ = command_kpa;
+  command_kpa_ = in_range(limits_, command_kpa);
   last_wanted_kpa_ = running.pressure_kpa();
   // The fade-out begins at the displacement that the model would reach after one tick in which the pressure
   // moves towards the present command.
@@ -135,6 +128,7 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
   fade_from(alone_mm, (alone_mm - before_mm) / tick_s_, wanted, query.time_s + preview_s_);
   last_displacement_mm_ = before_mm;
   jumps_.start(wanted.value);
+  held_ = false;
 }
 
 void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
@@ -153,19 +147,32 @@ FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexce
   const double then_s = query.time_s + preview_s_;
   const double target_mm = wanted_mm(limits_, query, then_s);
   const double now_mm = inverse_.displacement_mm();
-  if (jumps_.jumps_to(target_mm)) {
+  const bool jumped = jumps_.jumps_to(target_mm);
+  // A fade-out of less than a tick would only continue the present motion for one tick.
+  if ((jumped || held_) && tick_s_ < fade_s) {
     const double going_mm = now_mm - last_displacement_mm_;
     fade_from(now_mm + going_mm, going_mm / tick_s_, target(query), then_s);
   }
+  held_ = false;
   last_displacement_mm_ = now_mm;
 
   const auto solution =
       inverse_.solve(target_mm + fade_.value_at(then_s), limits_.pressure_min_kpa, ceiling_kpa_);
   command_kpa_ = command_toward(solution.pressure_kpa);
-  const double next_kpa = std::min(valve_.advance(inverse_.pressure_kpa(), command_kpa_), ceiling_kpa_);
-  inverse_.advance(next_kpa);
-  const bool late = std::abs(next_kpa - solution.pressure_kpa) > late_kpa;
+  advance();
+  const bool late = std::abs(inverse_.pressure_kpa() - solution.pressure_kpa) > late_kpa;
   return {command_kpa_, late || !solution.reached};
+}
+
+void FullModelFeedforward::advance() noexcept {
+  inverse_.advance(std::min(valve_.advance(inverse_.pressure_kpa(), command_kpa_), ceiling_kpa_));
+}
+
+void FullModelFeedforward::hold() noexcept {
+  last_displacement_mm_ = inverse_.displacement_mm();
+  advance();
+  last_wanted_kpa_ = inverse_.pressure_kpa();
+  held_ = true;
 }
 
 double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings, double tick_s) {
@@ -248,6 +255,10 @@ void Feedforward::enter(const RunningModel& running, const FeedforwardQuery& que
 
 FeedforwardStep Feedforward::step(const FeedforwardQuery& query) noexcept {
   return std::visit([&](auto& kind) { return kind.step(query); }, kind_);
+}
+
+void Feedforward::hold() noexcept {
+  if (auto* const full = std::get_if<FullModelFeedforward>(&kind_)) full->hold();
 }
 
 double Feedforward::preview_s() const noexcept {

@@ -37,7 +37,8 @@ struct FeedforwardQuery {
 // Each kind of feedforward has three functions. enter() is called with the present outputs when tracking of a
 // reference begins. step() is called once per tick after enter(). preview_s() returns how far ahead of now
 // the kind reads the reference. A new kind needs a class, an entry in the variant of Feedforward, and a case
-// in the constructor of Feedforward.
+// in the constructor of Feedforward. A kind with a state that changes while the command is constant also
+// needs the function hold() and a call of this function in Feedforward::hold().
 
 class NoFeedforward {
  public:
@@ -83,6 +84,7 @@ class FullModelFeedforward {
   /// the command.
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
+  void hold() noexcept;
   [[nodiscard]] double preview_s() const noexcept { return preview_s_; }
 
  private:
@@ -90,6 +92,8 @@ class FullModelFeedforward {
   void fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
                  double then_s) noexcept;
   [[nodiscard]] double command_toward(double wanted_kpa) noexcept;
+  /// Advances the states of valve and finger by one tick under the command `command_kpa_`.
+  void advance() noexcept;
 
   LimitSettings limits_;
   double tick_s_;
@@ -103,9 +107,10 @@ class FullModelFeedforward {
   double easy_mm_per_s_;        ///< speed at which the finger moves while the command changes at the slew
                                 ///< limit
   JumpDetector jumps_;          ///< jumps of the target displacement
-  double last_displacement_mm_ = 0;  ///< displacement of the model at the start of the previous step
-  Reference fade_;  ///< fade-out of the difference after enter() or after a jump of the reference, on the
-                    ///< clock of the reference
+  double last_displacement_mm_ = 0;  ///< displacement of the model at the start of the previous tick
+  bool held_ = false;  ///< true: the command was held in the last tick, so the next step starts a fade-out
+  Reference fade_;     ///< fade-out of the difference after enter(), after hold() or after a jump of the
+                       ///< reference, on the clock of the reference
 };
 
 /// Follows a plan that was computed before the sequence starts (control/sequences/planner.h). The plan is
@@ -155,6 +160,12 @@ class Feedforward {
               double tick_s);
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
+  /// Replaces step() in a tick without a reference. The board continues to hold the command of the last
+  /// step() or enter(), within the pressure range. The finger still moves in this tick, because the valve
+  /// lags and the finger creeps. The state of the kind `full_model` follows this motion. The next step()
+  /// starts a fade-out from this motion to the reference. The other kinds do not change: the state of
+  /// `bouc_wen` is constant at a constant pressure, and `planned` gets a reference in every tick.
+  void hold() noexcept;
   [[nodiscard]] double preview_s() const noexcept;
 
  private:

@@ -130,36 +130,62 @@ TEST(LibraryControl, AReferenceRefusesSegmentsThatAreNotFinite) {
   EXPECT_EQ(reference.at(1), 0);
 }
 
-/// Returns the commands of a feedforward for a sine reference. Before the steps `broken`, the feedforward
-/// gets the reference `value` for three further steps.
-std::vector<double> commands_with(FeedforwardKind kind, double value, const std::vector<int>& broken) {
+TEST(LibraryControl, AReferenceThatIsNotFiniteHoldsTheCommand) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   Limits limits;
   limits.pressure_max_kpa = 60;
-  Feedforward feedforward(bench_twin(), limits, 0.005, kind);
-  feedforward.start(5, 1);
-  std::vector<double> commands_kpa;
-  for (int k = 0; k < 400; ++k) {
-    if (std::find(broken.begin(), broken.end(), k) != broken.end()) {
-      const double last_kpa = k > 0 ? commands_kpa.back() : kind == FeedforwardKind::none ? 0 : 5;
-      for (int i = 0; i < 3; ++i) {
-        const FeedforwardStep held = feedforward.step(value);
-        EXPECT_EQ(held.pressure_kpa, last_kpa) << k;
-        EXPECT_TRUE(held.out_of_reach) << k;
-      }
-    }
-    commands_kpa.push_back(feedforward.step(2 - std::cos(0.02 * k)).pressure_kpa);
-  }
-  return commands_kpa;
-}
-
-TEST(LibraryControl, AReferenceThatIsNotFiniteHoldsTheCommandAndChangesNoState) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const FeedforwardKind kind :
        {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {
-    const std::vector<double> expected = commands_with(kind, 0, {});
-    for (const double value : {nan, infinity, -infinity})
-      EXPECT_EQ(commands_with(kind, value, {0, 1, 200}), expected) << static_cast<int>(kind) << " " << value;
+    SCOPED_TRACE(static_cast<int>(kind));
+    for (const double start_kpa : {5.0, 70.0}) {
+      Feedforward feedforward(bench_twin(), limits, 0.005, kind);
+      feedforward.start(start_kpa, 1);
+      double last_kpa = kind == FeedforwardKind::none ? 0 : std::min(start_kpa, 60.0);
+      for (int k = 0; k < 400; ++k) {
+        const bool is_missing = k < 3 || k % 50 > 40;
+        const double missing = k % 3 == 0 ? nan : k % 3 == 1 ? infinity : -infinity;
+        const FeedforwardStep step = feedforward.step(is_missing ? missing : 2 - std::cos(0.02 * k));
+        if (is_missing) {
+          EXPECT_EQ(step.pressure_kpa, last_kpa) << k;
+          EXPECT_TRUE(step.out_of_reach) << k;
+        }
+        ASSERT_TRUE(step.pressure_kpa >= 0 && step.pressure_kpa <= 60) << k;
+        last_kpa = step.pressure_kpa;
+      }
+    }
   }
+}
+
+/// Returns the largest error of a finger that equals the model. The reference moves from 3 to 15 mm in 2 s.
+/// Within this motion, it is missing for `gap_s`. Errors count from 1.5 s after the gap on.
+double error_after_gap(double gap_s) {
+  constexpr double tick_s = 0.005;
+  Reference reference(3);
+  EXPECT_TRUE(reference.hold_for(4));
+  EXPECT_TRUE(reference.ramp_to(15, 2));
+  Limits limits;
+  limits.pressure_max_kpa = 80;
+  Feedforward feedforward(bench_twin(), limits, tick_s);
+  feedforward.start(0, reference.at(0));
+  Simulator finger(bench_twin(), tick_s);
+  const double gap_end_s = 4.7 + gap_s;
+  double worst = 0;
+  for (int k = 0; k * tick_s < gap_end_s + 4; ++k) {
+    const double time_s = k * tick_s;
+    const bool is_missing = time_s >= 4.7 && time_s < gap_end_s;
+    const double ahead = is_missing ? nan : reference.at(time_s + feedforward.preview_s());
+    const double command_kpa = feedforward.step(ahead).pressure_kpa;
+    (void)finger.step(0, command_kpa);
+    const double moved = finger.step(tick_s, command_kpa);
+    if (time_s > gap_end_s + 1.5) worst = std::max(worst, std::abs(moved - reference.at(time_s + tick_s)));
+  }
+  return worst;
+}
+
+TEST(LibraryControl, TheModelOfAFeedforwardMovesWhileTheReferenceIsMissing) {
+  const double without_gap = error_after_gap(0);
+  EXPECT_LT(without_gap, 0.01);
+  for (const double gap_s : {0.05, 1.0, 3.0}) EXPECT_LT(error_after_gap(gap_s), without_gap + 2e-3) << gap_s;
 }
 
 TEST(LibraryControl, StartOfAFeedforwardDiscardsThePreviousMotion) {

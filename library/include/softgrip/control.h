@@ -196,8 +196,9 @@ class SOFTGRIP_API Feedforward {
   void start(double command_kpa, double reference_ahead) noexcept;
   /// Returns the command for this period. The board holds this command until the next period. If
   /// `reference_ahead` is not finite, the result is the last command with `out_of_reach` = true, and the
-  /// state does not change. The last command is then the command of start(), limited to the pressure range,
-  /// if no step followed start(). For the kind `none`, the command is always 0.
+  /// model advances by one period under this command, as the finger does. The last command is then the
+  /// command of start(), limited to the pressure range, if no step followed start(). For the kind `none`, the
+  /// command is always 0.
   /// @param reference_ahead  value of the reference preview_s() after the present, in the unit of the model
   [[nodiscard]] FeedforwardStep step(double reference_ahead) noexcept;
 

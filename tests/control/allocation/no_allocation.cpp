@@ -55,13 +55,30 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
   }
 }
 
-TEST(FeedforwardAllocation, AssigningAFeedforwardOfTheSameModelAllocatesNothing) {
+// The library starts a feedforward again at any time: it resets the running model and assigns a feedforward of
+// the same model, also after enter(), step() and hold().
+TEST(FeedforwardAllocation, ANewStartAllocatesNothing) {
   const ChannelSettings settings = sim::twin_settings();
   for (const FeedforwardKind kind :
        {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {
     const Feedforward at_rest(settings.model, {kind, 0}, settings.limits, sim::tick_s);
     Feedforward feedforward = at_rest;
-    EXPECT_EQ(test::allocations_of([&] { feedforward = at_rest; }), 0U) << static_cast<int>(kind);
+    RunningModel running(settings.model, sim::tick_s, 0, sim::tick_s);
+    Reference reference;
+    reference.start(0, 3);
+    FeedforwardQuery query{.reference = &reference};
+    const auto run = [&] {
+      for (int start = 0; start < 3; ++start) {
+        running.reset(5.0 * start);
+        feedforward = at_rest;
+        feedforward.enter(running, query, 5.0 * start);
+        for (int k = 0; k < 300; ++k) {
+          (void)feedforward.step(query);
+          if (k % 10 == 0) feedforward.hold();
+        }
+      }
+    };
+    EXPECT_EQ(test::allocations_of(run), 0U) << static_cast<int>(kind);
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "control/feedforward/running_model.h"
@@ -209,19 +208,6 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
   for (int k = 0; k <= 60; ++k) twin.step(0.01 * k);
   EXPECT_NEAR(twin.alpha * twin.p_kpa - twin.h_mm, 0.6, 0.1);
   EXPECT_GT(std::abs(twin.alpha * twin.p_kpa - twin.h_mm - 0.6), 0.003);
-}
-
-TEST(ActuatorInverse, ADisplacementThatIsNotFiniteGivesTheLastPressure) {
-  ActuatorInverse inverse(play_body(), tick_s);
-  inverse.advance(20);
-  for (const double displacement_mm :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-        -std::numeric_limits<double>::infinity()}) {
-    const auto solution = inverse.solve(displacement_mm, 0, 60);
-    EXPECT_EQ(solution.pressure_kpa, 20);
-    EXPECT_FALSE(solution.reached);
-    EXPECT_EQ(inverse.solve(displacement_mm, 0, 15).pressure_kpa, 15) << "the upper bound is 15 kPa";
-  }
 }
 
 }  // namespace
