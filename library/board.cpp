@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "base/numbers.h"
+#include "control/feedforward/running_model.h"
 #include "drivers/board/board.h"
 #include "library/model_parts.h"
 #include "simulation/plant/simulated_board.h"
@@ -13,6 +15,9 @@ namespace softgrip {
 namespace {
 
 constexpr std::size_t most_fingers = 16;
+/// Largest dead time of a finger in ticks. The delay line of a finger then needs at most 13 MB from the
+/// start. A line of more than a million ticks would grow in exchange(), which must not allocate memory.
+constexpr double most_delay_ticks = 100'000;
 /// Initial time of the clock of a simulated board [ns]. The initial time is not 0, because a reading with the
 /// time 0 counts as missing.
 constexpr Nanoseconds board_begins_at = 1'000'000'000;
@@ -101,6 +106,10 @@ SimulatedBoard::SimulatedBoard(std::vector<SimulatedFinger> fingers, double tick
     library::require_between("pressure_max_kpa", finger.pressure_max_kpa, -sensor_range, sensor_range, "kPa");
     if (!(finger.pressure_max_kpa > finger.pressure_min_kpa))
       throw InvalidArgument("pressure_max_kpa", "the value must be above pressure_min_kpa (both in kPa)");
+    const double delay_s = control::dead_time_s(finger.model.parts().value);
+    if (delay_s > most_delay_ticks * tick_s)
+      throw InvalidArgument("tick_s", significant(tick_s) + " s is below 1/100000 of the dead time of " +
+                                          finger.model.name() + ", which is " + significant(delay_s) + " s");
     if (finger.object && !is_valid(*finger.object))
       throw InvalidArgument("object", "the position must be finite, in " + unit +
                                           ", and the share by which the object yields must be from 0 to 1");

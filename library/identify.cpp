@@ -42,12 +42,12 @@ sysid::ShowProgress progress_of(const Progress& progress) {
 void require_free_choice(const IdentifyOptions& options) {
   const std::string choice = "the options request a choice of the structure, but also ";
   if (options.start)
-    throw InvalidArgument("start",
-                          choice + "contain a start model. To fit the start model, use Structure::start");
+    throw InvalidArgument(
+        "start", choice + "contain a start model. To fit the start model, use the structure `start`");
   const auto refuse_unless = [&](const char* argument, bool is_default) {
     if (!is_default)
-      throw InvalidArgument(argument,
-                            choice + "set `" + argument + "`. To use this setting, use Structure::start");
+      throw InvalidArgument(
+          argument, choice + "set `" + argument + "`. To use this setting, use the structure `start`");
   };
   refuse_unless("branches", options.branches == IdentifyOptions{}.branches);
   refuse_unless("fixed", options.fixed.empty());

@@ -217,9 +217,22 @@ TEST(LibraryControl, RefusesATickThatIsTooShortForASimulatedBoard) {
       EXPECT_THROW(Simulator(bench_twin(), tick_s), InvalidArgument) << tick_s;
     }
   }
-  EXPECT_NO_THROW(SimulatedBoard(fingers, 1e-6));
+  EXPECT_NO_THROW(SimulatedBoard(fingers, 2e-6));
   EXPECT_NO_THROW(Simulator(bench_twin(), 1e-6));
   EXPECT_NO_THROW(Simulator(bench_twin(), 0));
+}
+
+TEST(LibraryControl, RefusesADelayOfTooManyTicksForASimulatedBoard) {
+  const SimulatedFinger finger{.model = bench_twin().with("transport_delay.delay_s", 1)};
+  EXPECT_NO_THROW(SimulatedBoard({finger}, 1e-5));
+  try {
+    const SimulatedBoard board({{.model = bench_twin()}, finger}, 0.99e-5);
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    EXPECT_EQ(error.argument(), "tick_s");
+    EXPECT_NE(std::string(error.what()).find("dead time of bench_twin, which is 1 s"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(LibraryControl, RefusesAModelWithoutAnInverse) {

@@ -110,7 +110,9 @@ class SOFTGRIP_API SimulatedBoard final : public Board {
  public:
   /// Creates a board. Throws InvalidArgument if an argument is invalid.
   /// @param fingers  settings of the fingers, one entry per channel; 1 to 16 entries
-  /// @param tick_s   usual time between two calls of exchange() [s], at least 1e-6
+  /// @param tick_s   usual time between two calls of exchange() [s], at least 1e-6 and at least 1/100000 of
+  /// the
+  ///                 dead time of each model
   explicit SimulatedBoard(std::vector<SimulatedFinger> fingers, double tick_s = 0.005);
   ~SimulatedBoard() override;
 

@@ -55,8 +55,8 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
   }
 }
 
-// The library starts a feedforward again at any time: it resets the running model and assigns a feedforward of
-// the same model, also after enter(), step() and hold().
+// The library starts a feedforward again at any time: it resets the running model and assigns a feedforward
+// of the same model, also after enter(), step() and hold().
 TEST(FeedforwardAllocation, ANewStartAllocatesNothing) {
   const ChannelSettings settings = sim::twin_settings();
   for (const FeedforwardKind kind :
