@@ -66,7 +66,7 @@ int main() {
     if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return -1;
     std::thread([line = ends[1]] {
       for (char text[64] = ""; ::read(line, text, sizeof text - 1) > 0;)
-        ::dprintf(line, "POS %.3f\n", 0.2 * std::stod(text + 4));
+        ::send(line, text, std::snprintf(text, 64, "POS %.3f\n", 0.2 * std::stod(text + 4)), MSG_NOSIGNAL);
     }).detach();
     return ends[0];
   });
