@@ -110,6 +110,7 @@ def closed(line):
     line.recv(64)
     line.close()
 def other(line):
+    line.recv(64)  # without this, the line can be closed before the command is sent
     line.sendall(b"ERR 5\\n")
 def endless(line):
     try:
