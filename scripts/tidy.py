@@ -37,8 +37,8 @@ def sources(places):
 
 
 def commands():
-    """Returns the compiler arguments of each source. Removes precompiled headers and the GCC warnings that
-    clang does not know."""
+    """Returns the compiler arguments of each source. Removes precompiled headers, and warnings and parameters of GCC
+    that clang does not know."""
     if not (BUILD / "compile_commands.json").exists():
         subprocess.run(["cmake", "--preset", "release", "-B", BUILD], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     found = {}
@@ -47,7 +47,7 @@ def commands():
         while words and not words[0].endswith("++"):
             words.pop(0)  # removes a compiler launcher, such as ccache
         kept = [word for i, word in enumerate(words)
-                if word != "-Winvalid-pch" and not word.endswith("cmake_pch.hxx")
+                if word != "-Winvalid-pch" and not word.startswith("--param=") and not word.endswith("cmake_pch.hxx")
                 and not (word == "-include" and words[i + 1].endswith("cmake_pch.hxx"))]
         found[os.path.relpath(entry["file"], ROOT)] = {**entry, "command": shlex.join([*kept, "-Wno-unknown-warning-option"])}
     rooms = {name: files_of(name) for name in found if "/Unity/" in name}

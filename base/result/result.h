@@ -29,19 +29,17 @@ struct Value {
   using List = std::vector<Value>;
 
   Value() = default;
-  Value(bool yes) : json(yes), text(yes ? "yes" : "no") {}
-  Value(std::signed_integral auto number)
-      : json(std::int64_t{number}), text(std::to_string(number)), numeric(true) {}
-  Value(std::unsigned_integral auto number)
-      : json(std::uint64_t{number}), text(std::to_string(number)), numeric(true) {}
+  Value(bool yes);
+  Value(std::signed_integral auto number);
+  Value(std::unsigned_integral auto number);
   Value(double number);
   Value(const std::optional<double>& number);
-  Value(std::string words) : json(words), text(std::move(words)) {}
-  Value(std::string_view words) : Value(std::string(words)) {}
-  Value(const char* words) : Value(std::string(words)) {}
+  Value(std::string words);
+  Value(std::string_view words);
+  Value(const char* words);
   Value(const std::vector<std::string>& items);
-  Value(List items) : json(std::move(items)) {}
-  Value(Fields fields) : json(std::move(fields)) {}
+  Value(List items);
+  Value(Fields fields);
 
   /// The value in JSON: std::monostate becomes null, and Fields becomes an object.
   std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, List, Fields> json;
@@ -58,6 +56,18 @@ struct Field {
   std::string title;  ///< name for a reader; empty: the field is only in JSON
   Value value;
 };
+
+// The constructors of Value need the complete type Field.
+inline Value::Value(bool yes) : json(yes), text(yes ? "yes" : "no") {}
+Value::Value(std::signed_integral auto number)
+    : json(std::int64_t{number}), text(std::to_string(number)), numeric(true) {}
+Value::Value(std::unsigned_integral auto number)
+    : json(std::uint64_t{number}), text(std::to_string(number)), numeric(true) {}
+inline Value::Value(std::string words) : json(words), text(std::move(words)) {}
+inline Value::Value(std::string_view words) : Value(std::string(words)) {}
+inline Value::Value(const char* words) : Value(std::string(words)) {}
+inline Value::Value(List items) : json(std::move(items)) {}
+inline Value::Value(Fields fields) : json(std::move(fields)) {}
 
 /// Calls fields_of() from the namespace of the item.
 inline constexpr auto fields_of_item = [](const auto& item) { return fields_of(item); };
