@@ -21,8 +21,7 @@ class JumpDetector {
  public:
   /// Starts with a reference that is constant at `target_mm`.
   void start(double target_mm) noexcept;
-  /// Returns true if the reference jumps to `target_mm` in this tick. `target_mm` must
-  /// be finite.
+  /// Returns true if the reference jumps to `target_mm` in this tick. `target_mm` must be finite.
   [[nodiscard]] bool jumps_to(double target_mm) noexcept;
 
  private:

@@ -74,11 +74,12 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
 
     structure: "start" uses the structure of `start`, or the default structure with `branches` creep branches. "auto",
     "bouc_wen" and "prandtl_ishlinskii" select a structure by the error on held-out blocks of the logs ("play" is a
-    deprecated name of "prandtl_ishlinskii"). With such a selection, `start`, `branches`, `fixed`, `free` and `robust` must
-    have their default values; otherwise, `InvalidArgument` is raised. fixed: parameters that keep their start value. free: parameters that are
-    estimated; by default, all parameters except those in `fixed`. starts: number of start points. fit_share: share of
-    each log that is fitted, from its start; 0.05 to 1. threads: number of threads, 0 for one per processor core. drive:
-    "command" or "measured" pressure as the input. begin: state of the finger at the start of a log, "auto", "rest" or "unknown". validation: logs that are predicted but not fitted.
+    deprecated name of "prandtl_ishlinskii"). With such a selection, `start`, `branches`, `fixed`, `free` and `robust`
+    must have their default values; otherwise, `InvalidArgument` is raised. fixed: parameters that keep their start value.
+    free: parameters that are estimated; by default, all parameters except those in `fixed`. starts: number of start points.
+    fit_share: share of each log that is fitted, from its start; 0.05 to 1. threads: number of threads, 0 for one per
+    processor core. drive: "command" or "measured" pressure as the input. begin: state of the finger at the start of a log,
+    "auto", "rest" or "unknown". validation: logs that are predicted but not fitted.
     progress: function that is called with a text about the present stage; an exception in this function ends the
     computation, as Ctrl-C does.
 

@@ -273,8 +273,7 @@ class SimulatedBoard(Board):
 
     def __init__(self, fingers: Sequence[SimulatedFinger], tick: float = 0.005) -> None:
         """Creates a board. fingers: settings of the fingers, one entry per channel, 1 to 16 entries. tick: usual time
-        between two calls of `exchange()` [s], at least 1e-6 and at least 1/100000 of the dead time of
-        each model."""
+        between two calls of `exchange()` [s], at least 1e-6 and at least 1/100000 of the dead time of each model."""
         try:
             values = [_instance("fingers", one, SimulatedFinger)._values() for one in fingers]
         except TypeError as error:

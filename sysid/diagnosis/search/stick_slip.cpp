@@ -38,8 +38,9 @@ constexpr double band_stays = 5e-4, rest_stays = 0.01;
 /// Number of rounds after which the jump distances must scatter less than random distances. If they do not,
 /// the valve has no dead band.
 constexpr int rounds_of_chance = 6;
-/// Number of samples of a first search. If these samples contain enough jumps and no stick-slip motion, the
-/// other samples are not searched.
+/// Number of samples of a first search. If these samples contain limits::fewest_events jumps and no
+/// stick-slip motion, the other samples are not searched. The standard error of a scatter of 20 distances is
+/// 16 %, which is sufficient to distinguish equal distances from random ones.
 constexpr std::size_t samples_of_first_search = 10'000;
 /// Ratio of two sums of squares above which the difference cannot be a rounding error.
 constexpr double clearly_more = 1 + 1e-9;
@@ -190,12 +191,6 @@ Attempt search_bands(const std::vector<Record>& records, const StructureFit& beh
   return {std::nullopt, std::max(attempts[0].jumps, attempts[1].jumps)};
 }
 
-std::size_t sample_count(const std::vector<Record>& records) {
-  std::size_t count = 0;
-  for (const Record& record : records) count += record.size();
-  return count;
-}
-
 /// Returns the cause "dead band" with only one form, the smooth form. The smooth form is the mean of all
 /// possible stick-slip motions.
 Cause dragged_along(Cause dead_band) {
@@ -342,7 +337,7 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const std::vector<Record> first = first_samples(records, samples_of_first_search);
-  if (sample_count(first) < sample_count(records)) {
+  if (reading_count(first) < reading_count(records)) {
     const StructureFit behind_first = evaluate_structure(first, behind.causes, behind.point);
     const Attempt attempt = search_bands(first, behind_first, bands, resolution_kpa, threads);
     if (attempt.found) {
