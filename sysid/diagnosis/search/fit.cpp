@@ -127,9 +127,9 @@ StructureFit without_cause(StructureFit fit, const Cause& cause) {
 }
 
 StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
-                               const Cause& cause) {
+                               const Cause& cause, const FitEffort& effort) {
   StructureFit rest = without_cause(fit, cause);
-  return fit_structure(records, std::move(rest.causes), rest.point);
+  return fit_structure(records, std::move(rest.causes), rest.point, effort);
 }
 
 }  // namespace softgrip::sysid

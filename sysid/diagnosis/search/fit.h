@@ -77,6 +77,6 @@ inline constexpr double step_damping = 1e-3;
 /// Removes one cause from the structure and refits the remaining structure. The refit starts at the current
 /// parameters.
 [[nodiscard]] StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
-                                             const Cause& cause);
+                                             const Cause& cause, const FitEffort& effort = {});
 
 }  // namespace softgrip::sysid

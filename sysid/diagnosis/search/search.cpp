@@ -28,6 +28,8 @@ constexpr double worth_a_look = 1.5;
 /// limits::finalists also get a full fit to thinned records if their mean square is below this multiple of
 /// the smallest one. `next_to_best`: candidates after the best finished_candidates also get a full fit to all
 /// samples if their mean square is below this multiple of the smallest one.
+/// A mean square near the noise is similar for all candidates. A further candidate must therefore also
+/// explain the larger part of what the best candidate explains (limits::majority_share).
 constexpr double near_enough = 1.4;
 constexpr double next_to_best = 1.05;
 
@@ -121,7 +123,12 @@ StructureFit follow(const SearchData& data, const std::vector<StructureFit>& fro
 class CandidateFitter {
  public:
   CandidateFitter(const SearchData& data, const StructureFit& current, const CandidateSearch& search)
-      : data_(data), current_(current), search_(search), candidates_(wanted()), fits_(candidates_.size()) {}
+      : data_(data),
+        current_(current),
+        search_(search),
+        candidates_(wanted()),
+        fits_(candidates_.size()),
+        explained_mm2_(candidates_.size()) {}
 
   std::vector<Candidate> run() {
     glance_at_all();
@@ -153,11 +160,12 @@ class CandidateFitter {
 
   void glance_at_all() {
     const std::vector<Scan> scans = places(data_, current_);
+    const double unexplained_mm2 = unexplained_in(data_.glimpsed);
     std::atomic<std::size_t> tried{0};
     parallel_for(candidates_.size(), data_.threads, [&](std::size_t i) {
       Candidate& candidate = candidates_[i];
       if (candidate.why_not.empty()) {
-        fits_[i] = coarse_fits(data_, current_, scans, candidate.cause);
+        keep(i, coarse_fits(data_, current_, scans, candidate.cause), unexplained_mm2);
         if (fits_[i].empty()) candidate.why_not = "the fit failed from every start point";
       }
       if (search_.progress) search_.progress(++tried, candidates_.size());
@@ -165,17 +173,27 @@ class CandidateFitter {
   }
 
   /// Calls `work` for each candidate with a fit. The arguments are the rank of the candidate, its index, and
-  /// the smallest mean square of all candidates.
+  /// a function that returns true if the candidate may turn out to be as good as the best one: its mean
+  /// square is below the given multiple of the smallest one, and it explains the larger part of what the best
+  /// candidate explains.
   template <class Work>
   void for_each_ranked(Work work) {
     const std::vector<std::size_t> order = ranking();
-    const double best = best_of(order.front());
-    parallel_for(order.size(), data_.threads, [&](std::size_t rank) { work(rank, order[rank], best); });
+    const double best_mm2 = best_of(order.front());
+    const double least_mm2 = limits::majority_share * explained_mm2_[order.front()];
+    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
+      const std::size_t i = order[rank];
+      work(rank, i, [&, i](double largest_ratio) {
+        return best_of(i) < largest_ratio * best_mm2 && explained_mm2_[i] >= least_mm2;
+      });
+    });
   }
 
   void look_at_the_best() {
-    for_each_ranked([&](std::size_t rank, std::size_t i, double best) {
-      if (rank < always_looked_at || best_of(i) < worth_a_look * best) fits_[i] = looks(data_, fits_[i]);
+    const double unexplained_mm2 = unexplained_in(data_.thinned);
+    for_each_ranked([&](std::size_t rank, std::size_t i, const auto& is_comparable) {
+      if (rank < always_looked_at || is_comparable(worth_a_look))
+        keep(i, looks(data_, fits_[i]), unexplained_mm2);
     });
   }
 
@@ -184,25 +202,36 @@ class CandidateFitter {
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();
-    fits_[*leader_] = {follow(data_, fits_[*leader_])};
+    keep(*leader_, {follow(data_, fits_[*leader_])}, unexplained_in(data_.thinned));
     return search_.is_hopeless(best_of(*leader_));
   }
 
   void follow_the_best() {
-    for_each_ranked([&](std::size_t rank, std::size_t i, double best) {
-      if (i != leader_ && (rank < limits::finalists || best_of(i) < near_enough * best))
-        fits_[i] = {follow(data_, fits_[i])};
+    const double unexplained_mm2 = unexplained_in(data_.thinned);
+    for_each_ranked([&](std::size_t rank, std::size_t i, const auto& is_comparable) {
+      if (i != leader_ && (rank < limits::finalists || is_comparable(near_enough)))
+        keep(i, {follow(data_, fits_[i])}, unexplained_mm2);
     });
   }
 
   /// Makes the final fits of the candidates to all samples.
   void finish() {
-    for_each_ranked([&](std::size_t rank, std::size_t i, double best) {
+    for_each_ranked([&](std::size_t rank, std::size_t i, const auto& is_comparable) {
       const StructureFit& fit = fits_[i].front();
-      const bool whole = rank < finished_candidates || fit.mean_square_mm2 < next_to_best * best;
-      candidates_[i].fit = whole ? fit_structure(data_.records, fit.causes, fit.point)
-                                 : evaluate_structure(data_.records, fit.causes, fit.point);
+      candidates_[i].fit = rank < finished_candidates || is_comparable(next_to_best)
+                               ? fit_structure(data_.records, fit.causes, fit.point)
+                               : evaluate_structure(data_.records, fit.causes, fit.point);
     });
+  }
+
+  /// Returns the mean square of the structure without a further cause.
+  [[nodiscard]] double unexplained_in(const std::vector<Record>& records) const {
+    return evaluate_structure(records, current_.causes, current_.point).mean_square_mm2;
+  }
+
+  void keep(std::size_t i, std::vector<StructureFit> fits, double unexplained_mm2) {
+    fits_[i] = std::move(fits);
+    if (!fits_[i].empty()) explained_mm2_[i] = unexplained_mm2 - best_of(i);
   }
 
   [[nodiscard]] double best_of(std::size_t i) const { return fits_[i].front().mean_square_mm2; }
@@ -225,6 +254,8 @@ class CandidateFitter {
   std::vector<Candidate> candidates_;
   /// For each candidate, its fits to thinned records. The best fit comes first.
   std::vector<std::vector<StructureFit>> fits_;
+  /// For each candidate, the decrease of the mean square because of the candidate.
+  std::vector<double> explained_mm2_;
   /// Index of the candidate whose full fit was made first.
   std::optional<std::size_t> leader_;
 };

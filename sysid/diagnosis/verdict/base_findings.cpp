@@ -165,7 +165,7 @@ void take_back_alternatives(BaseFindings& found) {
 void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vector<ChosenCause>& chosen,
                              const SearchData& data, const BaseQuestion& question) {
   std::erase_if(chosen, [&](const ChosenCause& one) {
-    StructureFit rest = fit_without_cause(data.records, with, one.cause);
+    StructureFit rest = fit_without_cause(data.records, with, one.cause, finishing_effort);
     BlockLosses without = linear_held_out_losses(data.records, question.division, rest);
     // A cause is kept if its removal increases the held-out mean square by more than the noise variance.
     if (is_missed(without, losses, square(question.noise_mm), question.seed)) return false;
