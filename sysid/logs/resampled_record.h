@@ -12,10 +12,10 @@
 
 namespace softgrip::sysid {
 
-/// Number of readings that is sufficient for a diagnosis: about one hour at 10 Hz, or seven minutes at 100
-/// Hz. With more readings, a diagnosis or the choice of a model structure takes more time but does not become
-/// more accurate.
-inline constexpr std::size_t enough_readings = 40'000;
+/// Number of readings that is sufficient for a diagnosis: about 1000 readings for each parameter of the
+/// largest structures. With more readings, a diagnosis or the choice of a model structure takes more time but
+/// does not become more accurate.
+inline constexpr std::size_t enough_readings = 20'000;
 
 /// Returns the samples with the indices `kept`, with the durations between these samples. The sampling of the
 /// result counts as irregular.
