@@ -5,8 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "base/random.h"
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
+#include "sysid/changes/bins.h"
 #include "sysid/changes/filter_bank.h"
 #include "sysid/limits/limits.h"
 
@@ -23,24 +25,44 @@ Base with_model(Base base, const HealthyModel& model) {
   return base;
 }
 
-/// Returns the largest disagreement that is expected about another healthy run, from the mean disagreement
-/// about the healthy units.
-Disagreement expected_disagreement(const Base& base, const HealthyModel& other) {
-  const LaterReadings all(base, base.records, minus(base.left, other.left));
-  Disagreement expected;
+/// Returns the mean over the healthy units.
+/// @param differing  values of all healthy records, averaged over bins.
+Disagreement mean_of_units(const Base& base, const Binned& differing) {
+  const LaterReadings all(base, base.records, differing);
+  Disagreement mean;
   double units = 0;
   for (std::size_t unit = 0; unit < base.units.count(); ++unit) {
     const LaterReadings own = all.only(base.units, unit);
     if (own.records().empty()) continue;
     const auto [mean_square, loss] = disagreement(own);
-    expected.mean_square += mean_square;
-    expected.loss += loss;
+    mean.mean_square += mean_square;
+    mean.loss += loss;
     units += 1;
   }
-  const double factor = run_to_run_factor(base.units.runs()) / std::max(1.0, units);
+  mean.mean_square /= std::max(1.0, units);
+  mean.loss /= std::max(1.0, units);
+  return mean;
+}
+
+/// Returns the largest disagreement that is expected about another healthy run, from the mean disagreement
+/// about the healthy units.
+Disagreement expected_disagreement(const Base& base, const HealthyModel& other) {
+  Disagreement expected = mean_of_units(base, minus(base.left, other.left));
+  const double factor = run_to_run_factor(base.units.runs());
   expected.mean_square *= factor;
   expected.loss *= factor;
   return expected;
+}
+
+/// Returns white noise with the standard deviation of the noise of the readings, averaged over bins.
+Binned noise_of(const Base& base) {
+  Binned noise;
+  for (std::size_t r = 0; r < base.records.size(); ++r) {
+    std::vector<double> series(base.records[r].size());
+    for (std::size_t i = 0; i < series.size(); ++i) series[i] = base.noise_mm * normal_at(r, i);
+    noise.push_back(with_bins(binned(base.records[r], series, base.bin_s), base.left[r].size()));
+  }
+  return noise;
 }
 
 /// Returns the distance of the command from the pressure that the baseline model predicts, at each sample.
@@ -136,6 +158,20 @@ double remove_unfamiliar_commands(const Base& base, const std::vector<Record>& l
   return all > 0 ? removed / all : 0;
 }
 
+Disagreement added_by_motion(const Base& base, const std::vector<Record>& later) {
+  std::vector<std::vector<double>> motion;
+  for (const Record& record : later) motion.push_back(predict_base(base, record, {}));
+  const Disagreement now = disagreement(readings_of(base, later, motion));
+  const Disagreement healthy = mean_of_units(base, healthy_readings(base).plain());
+  const Disagreement error = mean_of_units(base, base.left), noise = mean_of_units(base, noise_of(base));
+  const auto added = [](double error_of_model, double motion_now, double healthy_motion) {
+    if (!(error_of_model > 0 && healthy_motion > 0 && motion_now > healthy_motion)) return 0.0;
+    return error_of_model * (motion_now / healthy_motion - 1);
+  };
+  return {added(error.mean_square - noise.mean_square, now.mean_square, healthy.mean_square),
+          added(error.loss - noise.loss, now.loss, healthy.loss)};
+}
+
 Disagreement added_disagreement(const Base& base, std::vector<Record> later) {
   // An estimated initial state depends on the readings. A drift would then look like an unlike input.
   for (Record& record : later) record.start = Start::rest;
@@ -156,7 +192,8 @@ Disagreement added_disagreement(const Base& base, std::vector<Record> later) {
   const double uncertainty = run_to_run_factor(1) / run_to_run_factor(base.units.runs());
   most.mean_square *= uncertainty;
   most.loss *= uncertainty;
-  return most;
+  const Disagreement motion = added_by_motion(base, later);
+  return {std::max(most.mean_square, motion.mean_square), std::max(most.loss, motion.loss)};
 }
 
 bool has_unfamiliar_input(const JudgedChange& judged) {

@@ -82,11 +82,19 @@ class RunSpread {
   Disagreement more_;
 };
 
+/// Returns the error that a larger motion adds to the error of a healthy run. The error of a model increases
+/// in proportion to the motion, but the noise does not. Its mean square is therefore multiplied by the mean
+/// square of the predicted motion of the later records, relative to that of the healthy runs, after the noise
+/// is subtracted. The result is zero for a motion that is not larger than the healthy one.
+/// @param later  later records at the full sampling rate.
+[[nodiscard]] Disagreement added_by_motion(const Base& base, const std::vector<Record>& later);
+
 /// Returns the disagreement about the later records beyond the largest one that is expected about another
 /// healthy run (run_to_run_factor()). If there are several alternatives, the largest value is returned. The
 /// result is zero for an input like the healthy inputs. The permitted error then stays unchanged. The
 /// disagreement is as uncertain as the error of a single run. Therefore the result is multiplied by the ratio
-/// of run_to_run_factor() for one run to its value for the healthy runs.
+/// of run_to_run_factor() for one run to its value for the healthy runs. The result is at least
+/// added_by_motion().
 /// @param later  later records at the full sampling rate.
 [[nodiscard]] Disagreement added_disagreement(const Base& base, std::vector<Record> later);
 

@@ -62,6 +62,33 @@ TEST(AddedDisagreement, DoesNotDependOnTheReadings) {
   EXPECT_NEAR(creeping.loss, before.loss, 1e-6);
 }
 
+/// Returns a record of the test finger whose commands are multiplied by `factor`.
+std::vector<Record> later_with(double factor) {
+  Log log = test::log_of({}, 1);
+  for (double& kpa : log.pressure_command_kpa) kpa *= factor;
+  return make_records({log}, {});
+}
+
+TEST(AddedByMotion, ErrorOfTheModelIncreasesInProportionToTheMotion) {
+  Base base = fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
+  const double noise_mm2 = healthy_readings(base).plain_rms({}) * healthy_readings(base).plain_rms({});
+  EXPECT_LT(added_by_motion(base, later_with(2)).mean_square, noise_mm2)
+      << "the model has hardly any error, and the noise does not increase";
+  for (std::vector<double>& record : base.left) {
+    for (double& left_mm : record) left_mm *= 20;
+  }
+  const double error_mm2 = 400 * noise_mm2;
+  const Disagreement same = added_by_motion(base, later_with(1)),
+                     twice = added_by_motion(base, later_with(2)),
+                     half = added_by_motion(base, later_with(0.5));
+  EXPECT_LT(same.mean_square, 0.3 * error_mm2);
+  // Twice the motion has four times the mean square.
+  EXPECT_NEAR(twice.mean_square - same.mean_square, 3 * error_mm2, 0.6 * error_mm2);
+  EXPECT_GT(twice.loss, same.loss);
+  EXPECT_EQ(half.mean_square, 0);
+  EXPECT_EQ(half.loss, 0);
+}
+
 TEST(RunSpreadOfSixRuns, AdmitsAChangeIfOneErrorExceedsItsBoundOrBothTheHealthyErrors) {
   std::vector<Log> logs;
   for (const unsigned seed : {1U, 11U, 21U}) {
