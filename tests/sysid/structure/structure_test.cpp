@@ -273,12 +273,12 @@ TEST(IdentifyStructure, FindsBoucWenWithDelayAndLag) {
 
 TEST(IdentifyStructure, DenseLogIsAveragedForTheChoiceButFittedFully) {
   const double noise_mm = 0.05;
-  const std::vector<Log> logs{simulated(loaded("bench_twin"), SignalName::tp1, 1000, noise_mm, 3)};
+  const std::vector<Log> logs{simulated(loaded("bench_twin"), SignalName::tp1, 500, noise_mm, 3)};
   ASSERT_GT(logs.front().size(), enough_readings);
   const auto found = identify_structure(logs, StructureQuestion::bouc_wen);
   ASSERT_TRUE(found) << found.error();
   ASSERT_EQ(found->warnings.size(), 1U);
-  EXPECT_NE(found->warnings.front().find("readings over 2 ms"), std::string::npos) << found->warnings.front();
+  EXPECT_NE(found->warnings.front().find("readings over 4 ms"), std::string::npos) << found->warnings.front();
   EXPECT_NEAR(found->rmse_mm, noise_mm, 0.02 * noise_mm)
       << "the error must be that of single samples, because means of two samples have less noise";
   const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
