@@ -203,8 +203,11 @@ TEST(DenseLogs, LongAndShortLogsAreNotAveraged) {
   std::vector<std::string> warnings;
   std::vector<Record> long_campaign = records_at(100, 12);
   EXPECT_FALSE(average_dense(long_campaign, warnings));
-  std::vector<Record> short_one = records_at(500, 1);
-  ASSERT_LE(short_one.front().readings, enough_readings);
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 500, 0.02, 7);
+  for (auto* column : {&log.time_s, &log.pressure_command_kpa, &log.displacement_mm})
+    column->resize(enough_readings);
+  std::vector<Record> short_one = make_records({log}, {});
+  ASSERT_EQ(short_one.front().readings, enough_readings);
   EXPECT_FALSE(average_dense(short_one, warnings));
   EXPECT_TRUE(warnings.empty());
 }
