@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -20,6 +21,41 @@ bool put(std::FILE* file, std::string_view text) {
 }
 
 namespace fs = std::filesystem;
+
+/// Returns the number of the open descriptor of this process to which a path leads, for example 1 for
+/// /dev/stdout. Returns nullopt for any other path. Only the links up to the descriptor are followed, and not
+/// the link to its file.
+std::optional<int> descriptor_at(fs::path path) {
+  constexpr int most_links = 40;  // the kernel follows as many links
+  std::error_code error;
+  const fs::path descriptors = fs::canonical("/proc/self/fd", error);
+  for (int links = 0; !error && links < most_links; ++links) {
+    const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : ".", error);
+    if (error) break;
+    if (folder == descriptors) {
+      const std::string name = path.filename().string();
+      int number = 0;
+      const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), number);
+      if (failed != std::errc() || end != name.data() + name.size()) break;
+      return number;
+    }
+    if (!fs::is_symlink(path, error)) break;
+    const fs::path target = fs::read_symlink(path, error);
+    path = target.is_absolute() ? target : folder / target;
+  }
+  return std::nullopt;
+}
+
+/// An output that is opened and written, and not replaced by a new file.
+using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// Opens the path for writing. A descriptor of this process continues at its current position, so that text
+/// in front of this position remains.
+Stream opened(const std::string& path) {
+  const std::optional<int> descriptor = path == "-" ? STDOUT_FILENO : descriptor_at(path);
+  std::FILE* const file = descriptor ? ::fdopen(::dup(*descriptor), "w") : std::fopen(path.c_str(), "w");
+  return {file, [](std::FILE* stream) { return std::fclose(stream); }};
+}
 
 /// Returns the files that a command reads if its input is the file or folder `input`.
 std::vector<std::string> files_of(const std::string& input) {
@@ -83,7 +119,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::vector<s
 
 // write_output() opens a stream for writing, because a rename would replace the stream by a file.
 bool is_stream(const std::string& path) {
-  if (path == "-") return true;
+  if (path == "-" || descriptor_at(path)) return true;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
@@ -92,13 +128,10 @@ bool is_stream(const std::string& path) {
 
 tl::expected<void, std::string> write_output(const std::string& path, std::string_view text) {
   if (!is_stream(path)) return write_file(path, text);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened{
-      path == "-" ? nullptr : std::fopen(path.c_str(), "w"),
-      [](std::FILE* file) { return std::fclose(file); }};
-  std::FILE* const file = path == "-" ? stdout : opened.get();
-  if (file == nullptr || !put(file, text)) {
+  (void)std::fflush(stdout);
+  const Stream stream = opened(path);
+  if (!stream || !put(stream.get(), text))
     return tl::unexpected{"cannot write " + path + ": " + std::strerror(errno)};
-  }
   return {};
 }
 

@@ -14,12 +14,12 @@
 namespace softgrip::tools {
 
 /// Writes a file completely or not at all. "-" is the standard output. An existing path that is not a regular
-/// file, for example /dev/stdout or a pipe, is opened and written. On failure, returns a sentence that
-/// describes the error.
+/// file, for example a pipe, is opened and written, and so is a path that leads to an open descriptor of this
+/// process, for example /dev/stdout. On failure, returns a sentence that describes the error.
 [[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
 
-/// Returns true for "-" and for an existing path that is not a regular file. The name of such an output does
-/// not define its format.
+/// Returns true for "-", for a path that leads to an open descriptor of this process, and for an existing
+/// path that is not a regular file. The name of such an output does not define its format.
 [[nodiscard]] bool is_stream(const std::string& path);
 
 /// Returns ExitCode::usage and prints a sentence if one of `outputs` is the same file as one of `inputs`. Two
