@@ -64,6 +64,14 @@ std::vector<SignalGroup> groups_of(const sysid::ForeignTable& table) {
   return {group};
 }
 
+/// Returns true if a column contains numbers of which a double does not represent each digit before the
+/// point.
+bool may_be_rounded(const sysid::TableColumn& column) {
+  constexpr double largest_exact = 9007199254740992;  // 2^53
+  return std::any_of(column.values.begin(), column.values.end(),
+                     [](double value) { return std::abs(value) > largest_exact; });
+}
+
 bool rises(const std::vector<double>& time_s) {
   return std::adjacent_find(time_s.begin(), time_s.end(), [](double a, double b) { return !(b > a); }) ==
          time_s.end();
@@ -99,6 +107,14 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
   if (!problems.empty()) return tl::unexpected(refuse(problems));
   for (const std::string& warning : table->warnings)
     std::fprintf(stderr, "softgrip: %s: %s\n", path.c_str(), warning.c_str());
+  for (const sysid::TableColumn& column : table->columns) {
+    if (may_be_rounded(column))
+      std::fprintf(
+          stderr,
+          "softgrip: %s: numbers above 9007199254740992 in column '%s' may be rounded. softgrip export "
+          "copies all digits only from logs with a column pressure_command_kpa\n",
+          path.c_str(), document::shown(column.name, 40).c_str());
+  }
   groups = groups_of(*table);
   if (!groups.empty() && rises(groups.front().time_s)) return groups;
   problems.add({path,

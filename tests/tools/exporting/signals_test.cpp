@@ -1,6 +1,10 @@
 #include "tools/exporting/signals.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
+
+#include "base/files.h"
 
 // This file checks the signals. tests/system/test_export.py checks the exported files with the programs that
 // read them.
@@ -36,6 +40,21 @@ TEST(Signals, StoredCellsAreWrittenToTheTableUnchanged) {
   const auto mat = mat_bytes(wide(groups));
   ASSERT_TRUE(mat) << mat.error();
   EXPECT_TRUE(mat->left_out.empty());
+}
+
+TEST(Signals, ATableWithNumbersThatMayBeRoundedGivesAWarning) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/series.csv";
+  const auto warning = [&](const char* number) {
+    EXPECT_TRUE(write_file(path, std::string("time_s,serial,x_mm\n0,") + number + ",1\n1,7,2\n"));
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(read_signals(path));
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(warning("9007199254740992"), "");
+  const std::string text = warning("-12345678901234567");
+  EXPECT_NE(text.find("'serial' may be rounded"), std::string::npos) << text;
+  EXPECT_EQ(text.find("x_mm"), std::string::npos) << text;
 }
 
 TEST(MatFile, ConvertsNamesToValidMatlabNames) {
