@@ -155,6 +155,17 @@ class Silent(MotionTest):
         _, samples = self.check("doctor", "requests_lost", 6)
         self.check_nothing_rises_again(samples)
 
+    def test_doctor_reports_at_once_that_the_board_does_not_respond(self):
+        child = self.begin(MOTIONS["doctor"][0])
+        self.wait_for_pressure(child, 5)
+        self.board.kill()
+        bench.wait_for("the report", lambda: "the board does not respond" in child.errors())
+        self.assertTrue(child.running(), "the report must not wait for the end of the command")
+        self.assertEqual(child.output(), "")
+        self.assertEqual(child.wait(), 6, child.errors())
+        findings = {finding["name"]: finding for finding in json.loads(child.output())["findings"]}
+        self.assertEqual([findings[name]["verdict"] for name in ("motion left", "safe state")], ["fail", "fail"])
+
     def test_calibrate_raises_no_pressure_while_replies_are_lost(self):
         """Tests a connection on which the requests arrive and the replies are lost. The board keeps its outputs. They
         may stay at the last command but must not rise."""

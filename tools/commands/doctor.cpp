@@ -88,7 +88,8 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   const auto lines = doctor::examine_gpio(rig, findings);
   daemon::Signals signals;
   doctor::examine_rig(
-      rig, *board, clock, [&signals] { return signals.first() != 0; }, move, {}, findings, lines.get());
+      rig, *board, clock, [&signals] { return signals.first() != 0; }, move, {}, findings, lines.get(),
+      tell_silence);
   if (signals.first() != 0 || !doctor::wants_bus_examination(findings)) return;
   board.reset();
   doctor::examine_bus(rig, findings);

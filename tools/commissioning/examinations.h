@@ -35,10 +35,11 @@ struct MoveSettings {
 /// Examines board, watchdog, bus budget and sensors. If `move` is set, also moves each finger a little and
 /// compares the motion with the finger's model. At the end, the channels are at their rest pressures. If the
 /// user stops the examination, the stop counts as a failure. `lines` are the digital lines of the rig, see
-/// MotionSession.
+/// MotionSession. Calls `silent` at most once, as MotionSession::leave() does: if the board stops responding
+/// after the measurement at rest, before the ramp to the rest pressures has ended.
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
                  bool move, const MoveSettings& settings, Findings& findings,
-                 drivers::GpioLines* lines = nullptr);
+                 drivers::GpioLines* lines = nullptr, const MotionSession::Warn& silent = {});
 
 /// Adds the finding that the displacement sensor of a channel is not used.
 void tell_unused_sensor(const std::string& channel, Findings& findings);

@@ -258,7 +258,8 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
 }
 
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
-                 bool move, const MoveSettings& settings, Findings& findings, drivers::GpioLines* lines) {
+                 bool move, const MoveSettings& settings, Findings& findings, drivers::GpioLines* lines,
+                 const MotionSession::Warn& silent) {
   MotionSession session(rig, board, clock, std::move(stop), lines);
   if (const auto connected = session.connect(); !connected) {
     failed(connected.error(), rig, "board", findings);
@@ -284,7 +285,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
                session.command_kpa(i), findings);
   }
   if (move) move_all(rig, session, *rest, settings, findings);
-  if (!session.leave()) {
+  if (!session.leave(silent)) {
     findings.fail("safe state", "the board did not confirm the rest pressures",
                   "vent the fingers by hand, and inspect them before you reach into the gripper");
   } else if (move) {

@@ -179,6 +179,39 @@ TEST_F(DoctorTest, ABoardLostDuringTheMotionFailsMotionAndSafeState) {
   expect("safe state", Verdict::fail, "did not confirm");
 }
 
+/// The ramp to the rest pressures and the wait for their confirmation take several seconds after the loss.
+TEST_F(DoctorTest, ABoardLostDuringTheMotionIsReportedBeforeTheEnd) {
+  for (control::ChannelSettings& channel : rig_.settings.channels) channel.limits.slew_down_kpa_per_s = 5;
+  simulated().watchdog_timeout_s = 0;
+  Event lost;
+  lost.kind = Event::Kind::bus_lost;
+  lost.status = drivers::BusStatus::timed_out;
+  lost.at_s = 1.8;  // the pressure rises
+  at_once(lost);
+  const Nanoseconds lost_at = time_.clock.now() + nanoseconds(lost.at_s);
+  make_board();
+  std::vector<std::string> reasons;
+  Nanoseconds told_at = 0;
+  examine_rig(rig_, *board_, time_.clock, time_.stop(), true, {}, findings_, nullptr,
+              [&](const std::string& why) {
+                reasons.push_back(why);
+                told_at = time_.clock.now();
+              });
+  expect("motion left", Verdict::fail, "simulated");
+  expect("safe state", Verdict::fail, "did not confirm");
+  ASSERT_EQ(reasons.size(), 1U);
+  EXPECT_NE(reasons[0].find("simulated"), std::string::npos) << reasons[0];
+  EXPECT_LT(seconds(told_at - lost_at), 0.1);
+  EXPECT_GT(seconds(time_.clock.now() - told_at), 3);
+}
+
+TEST_F(DoctorTest, ABoardThatRespondsIsNotReportedAsSilent) {
+  make_board();
+  examine_rig(rig_, *board_, time_.clock, time_.stop(), true, {}, findings_, nullptr,
+              [](const std::string& why) { ADD_FAILURE() << why; });
+  expect("safe state", Verdict::ok, "confirmed");
+}
+
 TEST_F(DoctorTest, WarnsOfAMissingWatchdog) {
   rig_.settings.safety.board_vents_when_silent = false;
   rig_.accept_no_watchdog = rig::no_watchdog_words;
