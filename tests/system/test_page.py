@@ -134,6 +134,24 @@ class Page(web.WebTest):
         for element, value in (("sequence", "pick_stone"), ("parameter-squeeze_kpa", "4.25")):
             self.assertEqual(seen.run(f"return document.getElementById('{element}').value"), value)
 
+    def test_a_list_without_the_chosen_sequence_selects_no_other_sequence(self):
+        seen = self.browse(self.start_web())
+        seen.wait_for_state("idle")
+        seen.wait("sequences", lambda: "pick_stone" in seen.text("sequence"))
+        seen.choose("sequence", "pick_stone")
+        seen.type_in("parameter-squeeze_kpa", "4.25")
+        value = "return document.getElementById('{}').value"
+        file = next(self.folder.rglob("pick_stone.yaml"))
+        away = file.rename(file.with_suffix(".away"))
+        seen.wait("a list without the sequence", lambda: "pick_stone" not in seen.text("sequence"))
+        self.assertEqual(seen.run(value.format("sequence")), "")
+        self.assertFalse(seen.find("start").is_enabled())
+        away.rename(file)
+        seen.wait("a list with the sequence", lambda: "pick_stone" in seen.text("sequence"))
+        self.assertEqual(seen.run(value.format("sequence")), "pick_stone")
+        self.assertEqual(seen.run(value.format("parameter-squeeze_kpa")), "4.25")
+        self.assertTrue(seen.find("start").is_enabled())
+
     def test_a_page_of_another_site_can_neither_command_nor_read(self):
         told = self.start_web(access="without_token: operate")
         seen = self.browse(told)

@@ -1,7 +1,7 @@
 // The operator's page. All data come from one event stream, and each command is one POST request.
 
 const $ = (id) => document.getElementById(id);
-const shown = {status: null, statistics: null, sequences: [], events: [], trend: []};
+const shown = {status: null, statistics: null, sequences: [], events: [], trend: [], typed: {}};
 let session = {role: "none", tokens: false, commands: false};
 let stream = null;
 let heardAt = 0;
@@ -281,10 +281,11 @@ dark.addEventListener("change", () => requestAnimationFrame(drawCurves));
 function showSequences(sequences) {
   shown.sequences = (sequences || []).filter((sequence) => !sequence.problems.length);
   const select = $("sequence");
-  const chosen = select.value;
-  select.replaceChildren(...shown.sequences.map(({name}) => new Option(name, name, false, name === chosen)));
-  // Another sequence must not take the place of a sequence that was removed or has become faulty.
-  if (chosen) select.value = chosen;
+  if (select.value) shown.chosen = select.value;
+  select.replaceChildren(...shown.sequences.map(({name}) => new Option(name, name)));
+  // Another sequence must not take the place of a sequence that was removed or has become faulty. A list without the
+  // chosen sequence selects none, so the choice is also kept for the next list.
+  if (shown.chosen) select.value = shown.chosen;
   showParameters();
 }
 
@@ -294,10 +295,9 @@ const units = {kpa: "kPa", mm_per_s: "mm/s", kpa_per_s: "kPa/s"};
 function showParameters() {
   const sequence = shown.sequences.find(({name}) => name === $("sequence").value);
   setText($("about"), sequence ? sequence.about : "");
-  // A new list of sequences must not change the typed values.
-  const typed = shown.parametersOf === $("sequence").value ?
-    Object.fromEntries([...$("parameters").querySelectorAll("input")].map((input) => [input.name, input.value])) : {};
-  shown.parametersOf = $("sequence").value;
+  // A new list of sequences must not change the typed values, also if a list in between lacks the sequence.
+  $("parameters").querySelectorAll("input").forEach((input) => { shown.typed[input.name] = input.value; });
+  if (sequence && shown.parametersOf !== sequence.name) Object.assign(shown, {typed: {}, parametersOf: sequence.name});
   $("parameters").replaceChildren(...(sequence ? sequence.parameters : []).map((parameter) => {
     const line = make("div");
     const unit = units[parameter.unit] || parameter.unit;
@@ -306,7 +306,7 @@ function showParameters() {
     input.id = `parameter-${parameter.name}`;
     label.htmlFor = input.id;
     Object.assign(input, {type: "number", name: parameter.name, min: parameter.lower, max: parameter.upper, step: "any",
-      value: typed[parameter.name] ?? parameter.default, required: true});
+      value: shown.typed[parameter.name] ?? parameter.default, required: true});
     line.append(label, input);
     return line;
   }));
