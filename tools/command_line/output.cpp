@@ -46,17 +46,6 @@ std::optional<int> descriptor_at(fs::path path) {
   return std::nullopt;
 }
 
-/// An output that is opened and written, and not replaced by a new file.
-using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-/// Opens the path for writing. A descriptor of this process continues at its current position, so that text
-/// in front of this position remains.
-Stream opened(const std::string& path) {
-  const std::optional<int> descriptor = path == "-" ? STDOUT_FILENO : descriptor_at(path);
-  std::FILE* const file = descriptor ? ::fdopen(::dup(*descriptor), "w") : std::fopen(path.c_str(), "w");
-  return {file, [](std::FILE* stream) { return std::fclose(stream); }};
-}
-
 /// Returns the files that a command reads if its input is the file or folder `input`.
 std::vector<std::string> files_of(const std::string& input) {
   if (!is_folder(input)) return {input};
@@ -128,11 +117,17 @@ bool is_stream(const std::string& path) {
 
 tl::expected<void, std::string> write_output(const std::string& path, std::string_view text) {
   if (!is_stream(path)) return write_file(path, text);
-  (void)std::fflush(stdout);
-  const Stream stream = opened(path);
-  if (!stream || !put(stream.get(), text))
-    return tl::unexpected{"cannot write " + path + ": " + std::strerror(errno)};
-  return {};
+  if (const std::optional<int> descriptor = path == "-" ? STDOUT_FILENO : descriptor_at(path)) {
+    // The output continues at the current position, after the text that was printed before.
+    (void)std::fflush(stdout);
+    errno = write_all(*descriptor, text);
+    if (errno == 0) return {};
+  } else {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{
+        std::fopen(path.c_str(), "w"), [](std::FILE* opened) { return std::fclose(opened); }};
+    if (file != nullptr && put(file.get(), text)) return {};
+  }
+  return tl::unexpected{"cannot write " + path + ": " + std::strerror(errno)};
 }
 
 tl::expected<void, std::string> prepare_folder(const std::string& folder) {
