@@ -13,10 +13,9 @@ namespace {
 /// Largest ratio of the smallest changes of the reading to the typical change for which the resolution of a
 /// sensor counts as fine.
 constexpr double fine_share = 0.25;
-/// A reading counts as frozen if three conditions hold. An interval of equal readings is at least
-/// `frozen_ratio` times as long as the 95 % quantile of such intervals. During the interval, the drive
-/// changes by more than `moved_share` of its range. The reading is neither the lowest nor the highest one of
-/// its log.
+/// Limits of the conditions for a frozen reading (see hide_repeated()): the length of an interval of equal
+/// readings, as a multiple of the 95 % quantile of such intervals, and the change of the drive in the
+/// interval, as a share of its range.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
 /// An interval of equal consecutive readings. `first` is an index of the vector `samples`.
@@ -74,19 +73,39 @@ std::size_t samples_per_reading(const Record& record, const Stretches& readings)
   return static_cast<std::size_t>(quantile(lengths, 0.5));
 }
 
-bool is_frozen(const Record& record, const Stretches& readings, const Stretch& stretch, double usual_length) {
+/// Returns true if the interval is long, and its reading is neither the lowest nor the highest one.
+bool may_be_frozen(const Record& record, const Stretches& readings, const Stretch& stretch,
+                   double usual_length) {
   if (static_cast<double>(stretch.length) < frozen_ratio * usual_length) return false;
   const double value = record.reading_mm[readings.samples[stretch.first]];
   const auto [low, high] = std::minmax_element(
       readings.samples.begin(), readings.samples.end(),
       [&](std::size_t a, std::size_t b) { return record.reading_mm[a] < record.reading_mm[b]; });
-  if (value == record.reading_mm[*low] || value == record.reading_mm[*high]) return false;
+  return value != record.reading_mm[*low] && value != record.reading_mm[*high];
+}
+
+bool drive_moves_in(const Record& record, const Stretches& readings, const Stretch& stretch) {
   const auto begin = record.drive_kpa.begin();
   const auto [least, most] = std::minmax_element(
       begin + static_cast<std::ptrdiff_t>(readings.samples[stretch.first]),
       begin + static_cast<std::ptrdiff_t>(readings.samples[stretch.first + stretch.length - 1]) + 1);
   const auto [lowest, highest] = std::minmax_element(begin, record.drive_kpa.end());
   return *most - *least > moved_share * (*highest - *lowest);
+}
+
+/// Returns true if the reading of a record is frozen while the drive moves.
+bool freezes_in_motion(const std::vector<Record>& records, const std::vector<Stretches>& readings) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const std::vector<Stretch>& stretches = readings[r].stretches;
+    if (stretches.size() < limits::fewest_events) continue;
+    const double usual_length = quantile(whole_lengths(readings[r]), 0.95);
+    if (std::ranges::any_of(stretches, [&](const Stretch& one) {
+          return may_be_frozen(records[r], readings[r], one, usual_length) &&
+                 drive_moves_in(records[r], readings[r], one);
+        }))
+      return true;
+  }
+  return false;
 }
 
 /// Returns the sum of the squared distances between the hidden readings and straight lines. Each line
@@ -113,16 +132,20 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   SamplingEvidence evidence;
   std::vector<double> intervals_s;
   double squares = 0;
+  std::vector<Stretches> all;
+  for (const Record& record : records) all.push_back(stretches_of(record));
+  const bool freezes = freezes_in_motion(records, all);
   for (std::size_t r = 0; r < records.size(); ++r) {
     Record& record = fresh[r];
-    const Stretches readings = stretches_of(records[r]);
+    const Stretches& readings = all[r];
     evidence.readings += readings.samples.size();
     if (readings.stretches.size() < limits::fewest_events) continue;
     const std::size_t period = samples_per_reading(record, readings);
     if (period > 1) intervals_s.push_back(static_cast<double>(period) * record.mean_interval_s());
     const double usual_length = quantile(whole_lengths(readings), 0.95);
     for (const Stretch& stretch : readings.stretches) {
-      const bool frozen = is_frozen(records[r], readings, stretch, usual_length);
+      const bool frozen = may_be_frozen(records[r], readings, stretch, usual_length) &&
+                          (drive_moves_in(records[r], readings, stretch) || (freezes && usual_length < 2));
       const std::size_t kept_each = frozen ? stretch.length : period;
       const std::size_t last = readings.samples[stretch.first + stretch.length - 1];
       if (frozen) evidence.frozen_s += record.time_s[last] - record.time_s[readings.samples[stretch.first]];

@@ -31,7 +31,9 @@ struct SamplingEvidence {
 /// The reading counts as frozen in an interval of equal readings under three conditions; only the first
 /// reading of such an interval is kept. The interval is at least 5 times as long as the 95 % quantile of all
 /// such intervals. The drive moves in this interval by at least a tenth of its range. The reading is not the
-/// lowest or highest reading of the log, because such a reading may be due to saturation.
+/// lowest or highest reading of the log, because such a reading may be due to saturation. If the reading is
+/// frozen in one interval, and consecutive readings of a log are usually unequal, the reading also counts as
+/// frozen in the other intervals of this length in which the drive does not move.
 [[nodiscard]] SamplingEvidence hide_repeated(std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -42,8 +42,7 @@ std::string readings_sentence(const Diagnosis& d) {
     if (d.sampling.interval_s > 0)
       forms.push_back("a new reading arrives every " + significant(d.sampling.interval_s, 2) + " s");
     if (d.sampling.frozen_s > 0)
-      forms.push_back("the sensor is frozen for " + significant(d.sampling.frozen_s, 2) +
-                      " s while the command moves");
+      forms.push_back("the sensor is frozen for " + significant(d.sampling.frozen_s, 2) + " s");
     if (!forms.empty()) wrong += " (" + enumerated(forms, ", and ") + ")";
   }
   if (d.lead)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -90,6 +91,22 @@ TEST(HideRepeated, HidesAFrozenSensor) {
     EXPECT_TRUE(std::isnan(record.reading_mm[1249]));
     EXPECT_TRUE(std::isfinite(record.reading_mm[1250]));
   }
+}
+
+TEST(HideRepeated, HidesAFreezeAtAConstantDriveOnlyBesideAFreezeInMotion) {
+  const auto frozen_campaign = [](bool also_in_motion) {
+    std::vector<Record> records = read_at(noisy_campaign(), [&](std::size_t i) {
+      if (i >= 2000 && i < 2240) return std::size_t{2000};
+      return also_in_motion && i >= 1010 && i < 1250 ? std::size_t{1010} : i;
+    });
+    for (Record& record : records) std::fill_n(record.drive_kpa.begin() + 2000, 240, record.drive_kpa[2000]);
+    return records;
+  };
+  std::vector<Record> at_constant_drive = frozen_campaign(false), both = frozen_campaign(true);
+  EXPECT_FALSE(hide_repeated(at_constant_drive).present);
+  const SamplingEvidence evidence = hide_repeated(both);
+  ASSERT_TRUE(evidence.present);
+  EXPECT_NEAR(evidence.frozen_s, 4 * 239 * 0.02, 0.1);
 }
 
 TEST(HideRepeated, LeavesASaturatedSensor) {

@@ -192,8 +192,8 @@ TEST(VerdictSentence, StatesBothFormsOfRepeatedReadings) {
   d.extended_rmse_mm = 0.4;
   d.sampling = {.interval_s = 0.1, .frozen_s = 3, .present = true};
   EXPECT_EQ(verdict_sentence(d),
-            "Readings repeat (a new reading arrives every 0.1 s, and the sensor is frozen for 3 s while the "
-            "command moves); without these readings the recalibrated model's error is 0.4 mm.");
+            "Readings repeat (a new reading arrives every 0.1 s, and the sensor is frozen for 3 s); "
+            "without these readings the recalibrated model's error is 0.4 mm.");
 }
 
 TEST(DataWarnings, ReportUndeterminedHysteresisWithoutUnloading) {
