@@ -160,6 +160,7 @@ double remove_unfamiliar_commands(const Base& base, const std::vector<Record>& l
 
 Disagreement added_by_motion(const Base& base, const std::vector<Record>& later) {
   std::vector<std::vector<double>> motion;
+  motion.reserve(later.size());
   for (const Record& record : later) motion.push_back(predict_base(base, record, {}));
   const Disagreement now = disagreement(readings_of(base, later, motion));
   const Disagreement healthy = mean_of_units(base, healthy_readings(base).plain());

@@ -133,6 +133,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   std::vector<double> intervals_s;
   double squares = 0;
   std::vector<Stretches> all;
+  all.reserve(records.size());
   for (const Record& record : records) all.push_back(stretches_of(record));
   const bool freezes = freezes_in_motion(records, all);
   for (std::size_t r = 0; r < records.size(); ++r) {
