@@ -25,6 +25,10 @@ Base with_model(Base base, const HealthyModel& model) {
   return base;
 }
 
+Disagreement scaled(const Disagreement& one, double factor) {
+  return {factor * one.mean_square, factor * one.loss};
+}
+
 /// Returns the mean over the healthy units.
 /// @param differing  values of all healthy records, averaged over bins.
 Disagreement mean_of_units(const Base& base, const Binned& differing) {
@@ -39,19 +43,13 @@ Disagreement mean_of_units(const Base& base, const Binned& differing) {
     mean.loss += loss;
     units += 1;
   }
-  mean.mean_square /= std::max(1.0, units);
-  mean.loss /= std::max(1.0, units);
-  return mean;
+  return scaled(mean, 1 / std::max(1.0, units));
 }
 
 /// Returns the largest disagreement that is expected about another healthy run, from the mean disagreement
 /// about the healthy units.
 Disagreement expected_disagreement(const Base& base, const HealthyModel& other) {
-  Disagreement expected = mean_of_units(base, minus(base.left, other.left));
-  const double factor = run_to_run_factor(base.units.runs());
-  expected.mean_square *= factor;
-  expected.loss *= factor;
-  return expected;
+  return scaled(mean_of_units(base, minus(base.left, other.left)), run_to_run_factor(base.units.runs()));
 }
 
 /// Returns white noise with the standard deviation of the noise of the readings, averaged over bins.
@@ -190,9 +188,7 @@ Disagreement added_disagreement(const Base& base, std::vector<Record> later) {
   }
   // The permitted error is run_to_run_factor() of the healthy runs times the result. The healthy runs do not
   // show the error for the later input. The disagreement is as uncertain as the error of a single run.
-  const double uncertainty = run_to_run_factor(1) / run_to_run_factor(base.units.runs());
-  most.mean_square *= uncertainty;
-  most.loss *= uncertainty;
+  most = scaled(most, run_to_run_factor(1) / run_to_run_factor(base.units.runs()));
   const Disagreement motion = added_by_motion(base, later);
   return {std::max(most.mean_square, motion.mean_square), std::max(most.loss, motion.loss)};
 }

@@ -117,17 +117,18 @@ bool is_stream(const std::string& path) {
 
 tl::expected<void, std::string> write_output(const std::string& path, std::string_view text) {
   if (!is_stream(path)) return write_file(path, text);
+  int error = 0;
   if (const std::optional<int> descriptor = path == "-" ? STDOUT_FILENO : descriptor_at(path)) {
     // The output continues at the current position, after the text that was printed before.
     (void)std::fflush(stdout);
-    errno = write_all(*descriptor, text);
-    if (errno == 0) return {};
+    error = write_all(*descriptor, text);
   } else {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{
         std::fopen(path.c_str(), "w"), [](std::FILE* opened) { return std::fclose(opened); }};
-    if (file != nullptr && put(file.get(), text)) return {};
+    if (file == nullptr || !put(file.get(), text)) error = errno;
   }
-  return tl::unexpected{"cannot write " + path + ": " + std::strerror(errno)};
+  if (error != 0) return tl::unexpected{"cannot write " + path + ": " + std::strerror(error)};
+  return {};
 }
 
 tl::expected<void, std::string> prepare_folder(const std::string& folder) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -26,19 +27,9 @@ struct Stretch {
 struct Stretches {
   std::vector<std::size_t> samples;
   std::vector<Stretch> stretches;
+  /// 95 % quantile of the lengths of the complete intervals. Infinity: there are too few intervals.
+  double usual_length = std::numeric_limits<double>::infinity();
 };
-
-Stretches stretches_of(const Record& record) {
-  Stretches all;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (!std::isfinite(record.reading_mm[i])) continue;
-    const bool is_new = all.samples.empty() || record.reading_mm[i] != record.reading_mm[all.samples.back()];
-    if (is_new) all.stretches.push_back({all.samples.size(), 0});
-    all.samples.push_back(i);
-    ++all.stretches.back().length;
-  }
-  return all;
-}
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
@@ -52,6 +43,19 @@ std::vector<double> whole_lengths(const Stretches& readings) {
   for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
     lengths.push_back(static_cast<double>(readings.stretches[k].length));
   return lengths;
+}
+
+Stretches stretches_of(const Record& record) {
+  Stretches all;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!std::isfinite(record.reading_mm[i])) continue;
+    const bool is_new = all.samples.empty() || record.reading_mm[i] != record.reading_mm[all.samples.back()];
+    if (is_new) all.stretches.push_back({all.samples.size(), 0});
+    all.samples.push_back(i);
+    ++all.stretches.back().length;
+  }
+  if (all.stretches.size() >= limits::fewest_events) all.usual_length = quantile(whole_lengths(all), 0.95);
+  return all;
 }
 
 bool is_fine(const Record& record, const Stretches& readings) {
@@ -74,9 +78,8 @@ std::size_t samples_per_reading(const Record& record, const Stretches& readings)
 }
 
 /// Returns true if the interval is long, and its reading is neither the lowest nor the highest one.
-bool may_be_frozen(const Record& record, const Stretches& readings, const Stretch& stretch,
-                   double usual_length) {
-  if (static_cast<double>(stretch.length) < frozen_ratio * usual_length) return false;
+bool may_be_frozen(const Record& record, const Stretches& readings, const Stretch& stretch) {
+  if (static_cast<double>(stretch.length) < frozen_ratio * readings.usual_length) return false;
   const double value = record.reading_mm[readings.samples[stretch.first]];
   const auto [low, high] = std::minmax_element(
       readings.samples.begin(), readings.samples.end(),
@@ -94,18 +97,10 @@ bool drive_moves_in(const Record& record, const Stretches& readings, const Stret
 }
 
 /// Returns true if the reading of a record is frozen while the drive moves.
-bool freezes_in_motion(const std::vector<Record>& records, const std::vector<Stretches>& readings) {
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::vector<Stretch>& stretches = readings[r].stretches;
-    if (stretches.size() < limits::fewest_events) continue;
-    const double usual_length = quantile(whole_lengths(readings[r]), 0.95);
-    if (std::ranges::any_of(stretches, [&](const Stretch& one) {
-          return may_be_frozen(records[r], readings[r], one, usual_length) &&
-                 drive_moves_in(records[r], readings[r], one);
-        }))
-      return true;
-  }
-  return false;
+bool freezes_in_motion(const Record& record, const Stretches& readings) {
+  return std::ranges::any_of(readings.stretches, [&](const Stretch& stretch) {
+    return may_be_frozen(record, readings, stretch) && drive_moves_in(record, readings, stretch);
+  });
 }
 
 /// Returns the sum of the squared distances between the hidden readings and straight lines. Each line
@@ -134,8 +129,11 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   double squares = 0;
   std::vector<Stretches> all;
   all.reserve(records.size());
-  for (const Record& record : records) all.push_back(stretches_of(record));
-  const bool freezes = freezes_in_motion(records, all);
+  bool freezes = false;
+  for (const Record& record : records) {
+    all.push_back(stretches_of(record));
+    freezes = freezes || freezes_in_motion(record, all.back());
+  }
   for (std::size_t r = 0; r < records.size(); ++r) {
     Record& record = fresh[r];
     const Stretches& readings = all[r];
@@ -143,10 +141,10 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
     if (readings.stretches.size() < limits::fewest_events) continue;
     const std::size_t period = samples_per_reading(record, readings);
     if (period > 1) intervals_s.push_back(static_cast<double>(period) * record.mean_interval_s());
-    const double usual_length = quantile(whole_lengths(readings), 0.95);
     for (const Stretch& stretch : readings.stretches) {
-      const bool frozen = may_be_frozen(records[r], readings, stretch, usual_length) &&
-                          (drive_moves_in(records[r], readings, stretch) || (freezes && usual_length < 2));
+      const bool frozen =
+          may_be_frozen(records[r], readings, stretch) &&
+          (drive_moves_in(records[r], readings, stretch) || (freezes && readings.usual_length < 2));
       const std::size_t kept_each = frozen ? stretch.length : period;
       const std::size_t last = readings.samples[stretch.first + stretch.length - 1];
       if (frozen) evidence.frozen_s += record.time_s[last] - record.time_s[readings.samples[stretch.first]];
