@@ -20,9 +20,9 @@ std::string other_start(const std::string& record) {
 }
 
 std::string unfamiliar_input(double factor) {
-  return "The input of the later logs is unlike the inputs of the healthy logs: models that predict the "
-         "healthy logs within their spread disagree about the later logs, or the motion is larger, which "
-         "increases the error of a model. The permitted error and the tolerances are therefore larger by a "
+  return "The input of the later logs is unlike the inputs of the healthy logs. Either the motion is larger, "
+         "which increases the error of a model, or models that predict the healthy logs within their spread "
+         "disagree about the later logs. The permitted error and the tolerances are therefore larger by a "
          "factor of up to " +
          significant(factor, 2) + " (mean square). Record a healthy log with such an input";
 }

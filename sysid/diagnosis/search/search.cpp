@@ -28,8 +28,9 @@ constexpr double worth_a_look = 1.5;
 /// limits::finalists also get a full fit to thinned records if their mean square is below this multiple of
 /// the smallest one. `next_to_best`: candidates after the best finished_candidates also get a full fit to all
 /// samples if their mean square is below this multiple of the smallest one.
-/// A mean square near the noise is similar for all candidates. A further candidate must therefore also
-/// explain the larger part of what the best candidate explains (limits::majority_share).
+/// Near the noise, the mean squares of all candidates are similar. In addition to each of these three limits,
+/// a candidate must therefore explain the larger part of what the best candidate explains
+/// (limits::majority_share).
 constexpr double near_enough = 1.4;
 constexpr double next_to_best = 1.05;
 
