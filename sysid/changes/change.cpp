@@ -18,6 +18,7 @@
 #include "sysid/diagnosis/residual/closed_loop.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/diagnosis/residual/resolution.h"
 #include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/plausibility_warnings.h"
@@ -151,6 +152,9 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
         Interval{100 * outliers.share_low, 100 * outliers.share_high}, outliers.excess_mm);
   const SamplingEvidence& sampling = later.sampling;
   constexpr double slower = 1.5;
+  if (sampling.step_mm > slower * std::max(healthy.sampling.step_mm, healthy.noise_mm))
+    add(causes::Sampling::id, {"resolution of the reading", sampling.step_mm, "mm"}, {},
+        std::sqrt(rounding_variance_mm2(sampling.step_mm)));
   if (!sampling.present) return;
   if (sampling.frozen_s > slower * healthy.sampling.frozen_s)
     add(causes::Sampling::id, {"the reading is frozen for", sampling.frozen_s, "s"}, {}, sampling.excess_mm);

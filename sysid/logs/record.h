@@ -84,11 +84,14 @@ struct Record {
   double finest_interval_s = 0;
   double campaign_time_s = 0;      ///< start of the record, relative to the start of the first log
   double oscillation_shift_s = 0;  ///< see model::Surroundings and aligned_lines()
-  double span_mm = 0;              ///< range of the readings
-  double largest_kpa = 0;          ///< largest magnitude of the drive
-  double largest_before_kpa = 0;   ///< largest magnitude of the drive in all records of the campaign before
-                                   ///< this one
-  std::size_t readings = 0;        ///< number of readings
+  /// Size of the steps of the readings if the sensor is coarse (diagnosis/residual/resolution.h), otherwise
+  /// 0.
+  double step_mm = 0;
+  double span_mm = 0;             ///< range of the readings
+  double largest_kpa = 0;         ///< largest magnitude of the drive
+  double largest_before_kpa = 0;  ///< largest magnitude of the drive in all records of the campaign before
+                                  ///< this one
+  std::size_t readings = 0;       ///< number of readings
   bool held = false;
   Start start = Start::automatic;  ///< assumption about the initial state
   bool start_unknown = false;      ///< true: a fit estimates the initial state

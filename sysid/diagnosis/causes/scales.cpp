@@ -16,6 +16,7 @@ Scales scales_of(const std::vector<Record>& records) {
   if (!records.empty()) s.time_unit_s = time_unit_s(records);
   for (const Record& record : records) {
     s.campaign_s += record.length_s();
+    s.step_mm = std::max(s.step_mm, record.step_mm);
     s.sample_s = std::min(s.sample_s, record.finest_interval_s);
     s.has_temperature |= varies(record.temperature_c);
     s.has_supply |= varies(record.supply_kpa);

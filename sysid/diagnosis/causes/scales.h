@@ -23,6 +23,7 @@ enum class Column : std::uint8_t { none, temperature_c, supply_kpa };
 /// Scales of a measurement campaign, that is, of all records together.
 struct Scales {
   double span_mm = 0;             ///< range of the displacement readings
+  double step_mm = 0;             ///< size of the steps of the readings if the sensor is coarse, otherwise 0
   double largest_kpa = 0;         ///< largest pressure at the input of the model
   double campaign_s = 0;          ///< total duration of all records
   double sample_s = 0;            ///< typical interval between two distinct readings, in the record where

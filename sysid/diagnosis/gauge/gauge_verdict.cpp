@@ -219,7 +219,8 @@ class Weighing {
     }
     for (const std::size_t place : changed) selection_.chosen[place].cause = places_[place][now[place]].cause;
     selection_.extended_losses = held_out_losses(data_.records, division_, selection_.extended);
-    selection_.left = unexplained_error_of(selection_.extended.residual_mm, question_.noise_mm);
+    selection_.left =
+        unexplained_error_of(selection_.extended.residual_mm, question_.noise_mm, data_.scales.step_mm);
     for (std::size_t place = 0; place < now.size(); ++place) {
       const StructureFit rest = without(place);
       selection_.chosen[place].gain_percent = gain_percent(held_out_losses(data_.records, division_, rest),

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "base/statistics.h"
+#include "sysid/diagnosis/residual/resolution.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/finite_values.h"
 
@@ -34,9 +35,59 @@ struct UnexplainedLimit {
 constexpr std::array unexplained_limits{UnexplainedLimit{3, limits::form_error_share},
                                         UnexplainedLimit{5, 0.02}};
 
+using Residual = std::vector<std::vector<double>>;
+
+struct Moments {
+  std::size_t count = 0;  ///< number of readings
+  double mean_square_mm2 = 0;
+  double slow_mm2 = 0;  ///< mean autocovariance over the first `lags` lags
+};
+
+Moments moments_of(const Residual& residual_mm) {
+  Moments moments;
+  double square = 0;
+  std::array<double, lags + 1> product{}, pairs{};
+  for (const std::vector<double>& r : residual_mm) {
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      if (std::isnan(r[i])) continue;
+      square += r[i] * r[i];
+      ++moments.count;
+      for (std::size_t lag = 1; lag <= std::min(lags, i); ++lag) {
+        if (std::isnan(r[i - lag])) continue;
+        product[lag] += r[i] * r[i - lag];
+        pairs[lag] += 1;
+      }
+    }
+  }
+  if (moments.count == 0) return moments;
+  moments.mean_square_mm2 = square / static_cast<double>(moments.count);
+  for (std::size_t lag = 1; lag <= lags; ++lag) {
+    if (pairs[lag] > 0) moments.slow_mm2 += product[lag] / pairs[lag] / lags;
+  }
+  return moments;
+}
+
+/// Returns the errors by rounding that the residual has if the prediction is correct.
+Residual rounding_errors(Residual residual_mm, double step_mm) {
+  for (std::vector<double>& r : residual_mm) {
+    for (double& each : r) each -= step_mm * std::round(each / step_mm);
+  }
+  return residual_mm;
+}
+
+/// Returns the number of changes of the reading in a prediction that is rounded to steps.
+std::size_t steps_in(const Residual& rounding_mm, double step_mm) {
+  std::size_t steps = 0;
+  for (const std::vector<double>& error : rounding_mm) {
+    for (std::size_t i = 1; i < error.size(); ++i)
+      steps += std::abs(error[i] - error[i - 1]) > step_mm / 2 ? 1U : 0U;
+  }
+  return steps;
+}
+
 }  // namespace
 
-double measured_noise_mm(const std::vector<Record>& records) {
+double white_noise_mm(const std::vector<Record>& records) {
   // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times the variance of the noise.
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
@@ -64,40 +115,41 @@ double measured_noise_mm(const std::vector<Record>& records) {
   return count == 0 ? 0 : std::sqrt(sum / (inflation * static_cast<double>(count)));
 }
 
-UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm, double noise_mm) {
-  double square = 0;
-  std::size_t count = 0;
-  std::vector<double> product(lags + 1, 0.0);
-  std::vector<double> pairs(lags + 1, 0.0);
-  for (const std::vector<double>& r : residual_mm) {
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      if (std::isnan(r[i])) continue;
-      square += r[i] * r[i];
-      ++count;
-      for (std::size_t lag = 1; lag <= std::min(lags, i); ++lag) {
-        if (std::isnan(r[i - lag])) continue;
-        product[lag] += r[i] * r[i - lag];
-        pairs[lag] += 1;
-      }
-    }
-  }
+double measured_noise_mm(const std::vector<Record>& records) {
+  const double white_mm = white_noise_mm(records);
+  double step_mm = 0;
+  for (const Record& record : records) step_mm = std::max(step_mm, record.step_mm);
+  if (step_mm == 0) return white_mm;
+  return std::hypot(std::sqrt(rounding_variance_mm2(step_mm)),
+                    noise_before_rounding_mm(records, step_mm, white_mm));
+}
+
+UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm, double noise_mm,
+                                      double step_mm) {
   UnexplainedError structure;
-  if (count == 0) return structure;
-  const double mean_square = square / static_cast<double>(count);
-  structure.excess_mm = std::sqrt(std::max(0.0, mean_square - noise_mm * noise_mm));
-  double sum = 0;
-  for (std::size_t lag = 1; lag <= lags; ++lag) {
-    if (pairs[lag] > 0) sum += product[lag] / pairs[lag] / mean_square;
+  const Moments residual = moments_of(residual_mm);
+  if (residual.count == 0) return structure;
+  double expected_mm2 = noise_mm * noise_mm, slow_mm2 = residual.slow_mm2;
+  auto independent = static_cast<double>(residual.count);
+  if (step_mm > 0) {
+    const Residual errors_mm = rounding_errors(residual_mm, step_mm);
+    const Moments rounding = moments_of(errors_mm);
+    expected_mm2 += rounding.mean_square_mm2 - rounding_variance_mm2(step_mm);
+    slow_mm2 -= rounding.slow_mm2;
+    // The errors by rounding of two samples are independent only if there is a limit between two steps
+    // between the samples.
+    independent = std::max(1.0, static_cast<double>(steps_in(errors_mm, step_mm)));
   }
-  structure.slow_correlation = sum / lags;
+  structure.excess_mm = std::sqrt(std::max(0.0, residual.mean_square_mm2 - expected_mm2));
+  structure.slow_correlation = slow_mm2 / residual.mean_square_mm2;
   // For n readings of white noise, the mean autocorrelation over 25 lags has a standard deviation of
   // 1/sqrt(25 n). A correlation below 1 % of the variance does not count, even if it is significant. The mean
   // square of the residual is a second criterion: it must not exceed the noise variance by more than the
   // uncertainty of this variance.
-  const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
-  structure.present = structure.slow_correlation >
-                          limits::negligible_share + 4 / std::sqrt(lags * static_cast<double>(count)) ||
-                      mean_square > noise_mm * noise_mm * (1 + limits::negligible_share + known_to);
+  const double known_to = 4 * std::sqrt(6.0 / independent);
+  structure.present =
+      structure.slow_correlation > limits::negligible_share + 4 / std::sqrt(lags * independent) ||
+      residual.mean_square_mm2 > expected_mm2 + noise_mm * noise_mm * (limits::negligible_share + known_to);
   return structure;
 }
 

@@ -9,8 +9,12 @@
 namespace softgrip::sysid {
 
 /// Returns the standard deviation of the white noise of the readings [mm]. It is computed from third
-/// differences of consecutive readings. Smooth motion and single wrong samples do not increase the result,
-/// but quantisation does.
+/// differences of consecutive readings. Smooth motion and single wrong samples do not increase the result.
+/// Rounding increases the result by the part of its error that is white noise.
+[[nodiscard]] double white_noise_mm(const std::vector<Record>& records);
+
+/// Returns the standard deviation of the noise of the readings [mm]. If the sensor is coarse
+/// (Record::step_mm), the result contains the complete error by rounding. Otherwise it is the white noise.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
 /// The part of a residual that exceeds the measurement noise.
@@ -22,10 +26,13 @@ struct UnexplainedError {
   bool present = false;         ///< true: the residual exceeds the noise
 };
 
-/// Computes the unexplained error of a residual.
+/// Computes the unexplained error of a residual. The error by rounding of a coarse sensor is not part of it.
+/// For a correct prediction, this error is the residual minus the nearest multiple of the step.
 /// @param residual_mm  one vector per record; NaN for samples without a reading.
+/// @param noise_mm  result of measured_noise_mm().
+/// @param step_mm  size of the steps of the readings (Scales::step_mm); 0: the sensor is not coarse.
 [[nodiscard]] UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm,
-                                                    double noise_mm);
+                                                    double noise_mm, double step_mm);
 
 /// Returns true if the unexplained error `left` is too large for a complete set of causes. The data then
 /// contain a further effect, or the equation of a cause does not match the real effect.

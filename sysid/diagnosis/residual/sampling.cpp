@@ -6,6 +6,7 @@
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
+#include "sysid/diagnosis/residual/resolution.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
@@ -123,8 +124,10 @@ double squares_beside_lines(const Record& before, const Record& after) {
 }  // namespace
 
 SamplingEvidence hide_repeated(std::vector<Record>& records) {
-  std::vector<Record> fresh = records;
   SamplingEvidence evidence;
+  evidence.step_mm = coarse_step_mm(records);
+  for (Record& record : records) record.step_mm = evidence.step_mm;
+  std::vector<Record> fresh = records;
   std::vector<double> intervals_s;
   double squares = 0;
   std::vector<Stretches> all;
@@ -162,6 +165,13 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   evidence.present = evidence.excess_mm > limits::hidden_by_noise * measured_noise_mm(fresh);
   if (evidence.present) records = std::move(fresh);
   return evidence;
+}
+
+void add_rounding(SamplingEvidence& evidence) {
+  if (evidence.step_mm == 0) return;
+  const double repeated_mm = evidence.present ? evidence.excess_mm : 0;
+  evidence.excess_mm = std::hypot(repeated_mm, std::sqrt(rounding_variance_mm2(evidence.step_mm)));
+  evidence.present = true;
 }
 
 }  // namespace softgrip::sysid

@@ -17,9 +17,11 @@ struct SamplingEvidence {
   double excess_mm = 0;
   std::size_t hidden = 0, readings = 0;
   bool present = false;  ///< true: `excess_mm` exceeds a quarter of the noise
+  double step_mm = 0;    ///< size of the steps of the readings if the sensor is coarse, otherwise 0
 };
 
-/// Replaces repeated readings by NaN if `present` becomes true.
+/// Replaces repeated readings by NaN if `present` becomes true. Sets Record::step_mm and
+/// SamplingEvidence::step_mm (coarse_step_mm()).
 ///
 /// A sensor counts as slower than its log under three conditions. The log contains at least
 /// limits::fewest_events complete intervals of equal readings. At most one in ten of these intervals contains
@@ -35,5 +37,8 @@ struct SamplingEvidence {
 /// frozen in one interval, and consecutive readings of a log are usually unequal, the reading also counts as
 /// frozen in the other intervals of this length in which the drive does not move.
 [[nodiscard]] SamplingEvidence hide_repeated(std::vector<Record>& records);
+
+/// Adds the error by rounding to the evidence if the sensor is coarse.
+void add_rounding(SamplingEvidence& evidence);
 
 }  // namespace softgrip::sysid

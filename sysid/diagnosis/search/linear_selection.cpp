@@ -75,7 +75,7 @@ class SelectorUpon {
       : data_(data), noise_mm_(noise_mm), division_(division), options_(options), scales_(data.scales) {
     scales_.residual_lines = spectrum_peaks(data.records, base.residual_mm);
     BlockLosses losses = linear_held_out_losses(data.records, division, base);
-    result_ = selection_from(std::move(base), std::move(losses), noise_mm);
+    result_ = selection_from(std::move(base), std::move(losses), noise_mm, data.scales.step_mm);
   }
 
   Selection run() {
@@ -250,7 +250,7 @@ class SelectorUpon {
     if (!stands(chosen, scored)) return false;
     result_.extended = *best.candidate.fit;
     result_.extended_losses = best.losses;
-    result_.left = unexplained_error_of(result_.extended.residual_mm, noise_mm_);
+    result_.left = unexplained_error_of(result_.extended.residual_mm, noise_mm_, data_.scales.step_mm);
     result_.chosen.push_back(std::move(chosen));
     return true;
   }

@@ -27,7 +27,7 @@ class Selector {
         options_(options),
         by_unit_(divide_by_unit(data.records)) {
     BlockLosses losses = held_out_losses(data_.records, division_, base);
-    result_ = selection_from(std::move(base), std::move(losses), noise_);
+    result_ = selection_from(std::move(base), std::move(losses), noise_, data.scales.step_mm);
   }
 
   Selection run() {
@@ -116,7 +116,7 @@ class Selector {
   }
 
   [[nodiscard]] double mean_square_excess(const StructureFit& fit) const {
-    return square(unexplained_error_of(fit.residual_mm, noise_).excess_mm);
+    return square(unexplained_error_of(fit.residual_mm, noise_, data_.scales.step_mm).excess_mm);
   }
 
   [[nodiscard]] BlockLosses left_out(const StructureFit& fit) const {
@@ -149,7 +149,7 @@ class Selector {
   void stand(StructureFit fit, BlockLosses losses) {
     result_.extended = std::move(fit);
     result_.extended_losses = std::move(losses);
-    result_.left = unexplained_error_of(result_.extended.residual_mm, noise_);
+    result_.left = unexplained_error_of(result_.extended.residual_mm, noise_, data_.scales.step_mm);
     fresh_.clear();
     without_.clear();
   }
@@ -273,9 +273,9 @@ ChosenCause chosen_cause(const Cause& cause, const BlockLosses& without, const B
           {}};
 }
 
-Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm) {
+Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm, double step_mm) {
   Selection selection;
-  selection.base_unexplained = selection.left = unexplained_error_of(base.residual_mm, noise_mm);
+  selection.base_unexplained = selection.left = unexplained_error_of(base.residual_mm, noise_mm, step_mm);
   selection.extended_losses = selection.base_losses = std::move(losses);
   selection.extended = selection.base = std::move(base);
   return selection;

@@ -61,7 +61,8 @@ struct Selection {
 };
 
 /// Returns a selection without any cause.
-[[nodiscard]] Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm);
+[[nodiscard]] Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm,
+                                       double step_mm);
 
 /// Smallest reduction of the mean square by a cause that is added to another base structure, as a multiple of
 /// the squared noise. The limit is necessary because no base structure matches the hysteresis loop of a

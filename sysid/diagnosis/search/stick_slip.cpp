@@ -254,7 +254,7 @@ class BestStickSlip {
   }
   /// Returns true if the remaining error is small. Then at most a few jumps of the valve can be wrong.
   [[nodiscard]] bool meets_all() const {
-    return best_ && unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm <
+    return best_ && unexplained_error_of(best_->fit.residual_mm, noise_mm_, data_.scales.step_mm).excess_mm <
                         limits::tolerated_noise * noise_mm_;
   }
   [[nodiscard]] const std::optional<StickSlip>& best() const { return best_; }
@@ -374,7 +374,8 @@ std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& dat
   // A few wrong jumps of the valve leave an error. If the remaining error is small, no second cause is
   // searched, because a second cause would only represent the wrong jumps.
   SelectionOptions behind = options;
-  if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm), plain.base_unexplained, noise_mm))
+  if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm, data.scales.step_mm),
+                       plain.base_unexplained, noise_mm))
     behind.most_causes = 0;
   Selection beyond = select_causes(driven, std::move(base), noise_mm, division, behind);
 

@@ -61,7 +61,8 @@ std::optional<std::string> AnotherBase::ask(const Selection& selection, const St
 void AnotherBase::go_on(const Selection& selection) {
   if (!found_) return;
   const BaseSearch search{data_, selection, question_};
-  const UnexplainedError left = unexplained_error_of(found_->fit.residual_mm, question_.noise_mm);
+  const UnexplainedError left =
+      unexplained_error_of(found_->fit.residual_mm, question_.noise_mm, data_.scales.step_mm);
   if (leaves_too_much(left, selection.base_unexplained, question_.noise_mm)) {
     find_causes_upon(*found_, search, upon_much_left);
   } else if (left.present && left.excess_mm > limits::tolerated_noise * question_.noise_mm) {
@@ -85,7 +86,8 @@ double AnotherBase::mean_square_mm2() const {
 
 bool AnotherBase::settles(const Selection& selection) const {
   if (!found_) return false;
-  const UnexplainedError left = unexplained_error_of(found_->fit.residual_mm, question_.noise_mm);
+  const UnexplainedError left =
+      unexplained_error_of(found_->fit.residual_mm, question_.noise_mm, data_.scales.step_mm);
   return !leaves_too_much(left, selection.base_unexplained, question_.noise_mm) &&
          square(left.excess_mm) < left_by_what_was_missing * square(selection.left.excess_mm);
 }

@@ -47,7 +47,7 @@ void Conclusion::adopt(BaseFindings& base, const Selection& selection) {
                        left_out_losses(data_.records, by_unit, selection.base),
                        linear_held_out_losses(data_.records, by_unit, d_.extended));
   d_.gain = gain_percent(selection.base_losses, base.losses, options_.seed);
-  d_.unexplained_error = unexplained_error_of(d_.extended.residual_mm, d_.noise_mm);
+  d_.unexplained_error = unexplained_error_of(d_.extended.residual_mm, d_.noise_mm, data_.scales.step_mm);
   d_.unexplained_percent =
       std::min(100.0, 100 * square(d_.unexplained_error.excess_mm / selection.base_unexplained.excess_mm));
   count_shift(base.losses);
@@ -175,7 +175,8 @@ bool Conclusion::name_readings_alone(const Selection& selection, const Division&
   if (first == causes_.begin()) return false;
   d_.causes.assign(std::make_move_iterator(causes_.begin()), std::make_move_iterator(first));
   d_.partial.assign(std::make_move_iterator(first), std::make_move_iterator(causes_.end()));
-  const Selection alone = selection_from(selection.base, selection.base_losses, d_.noise_mm);
+  const Selection alone =
+      selection_from(selection.base, selection.base_losses, d_.noise_mm, data_.scales.step_mm);
   d_.extended_other_logs_rmse_mm.reset();
   measure_extended(alone, division);
   count_readings(alone.left);

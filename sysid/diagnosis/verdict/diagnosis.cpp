@@ -7,6 +7,7 @@
 #include "base/statistics.h"
 #include "base/thread_budget.h"
 #include "model/blocks/periodic_disturbance.h"
+#include "model/blocks/quantisation.h"
 #include "model/named.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
@@ -24,6 +25,12 @@ namespace softgrip::sysid {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
+
+/// Returns true if the model contains a resolution that is nearly equal to `step_mm` or coarser.
+bool states_resolution(const model::Model& model, double step_mm) {
+  const auto place = model::position_of<model::Quantisation>(model);
+  return place && model.blocks[*place].values.front() * limits::comparable_ratio >= step_mm;
+}
 
 /// Refits the base structure. The parameters of the given model may be far from the true ones, so some fits
 /// start at points that are scaled to the data.
@@ -158,6 +165,7 @@ class Diagnostician {
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
+    if (!states_resolution(given_, d_.sampling.step_mm)) add_rounding(d_.sampling);
     d_.noise_mm = measured_noise_mm(records);
     if (d_.noise_mm <= 0) return Failure("the readings have no noise, so they cannot be measured data");
     d_.outliers = hide_outliers(records, d_.noise_mm);
@@ -292,7 +300,8 @@ class Diagnostician {
     options.seed = options_.seed;
     options.progress = options_.progress;
     std::optional<Selection> one_is_not_enough;
-    if (conclusion_.left_by_outliers(unexplained_error_of(recalibrated.residual_mm, d_.noise_mm)))
+    if (conclusion_.left_by_outliers(
+            unexplained_error_of(recalibrated.residual_mm, d_.noise_mm, data_.scales.step_mm)))
       options.most_causes = 0;
     if (may_ask_at_once()) {
       options.one_cause_stands = [&](const Selection& one_cause) {

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/statistics.h"
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/sampling.h"
+#include "sysid/diagnosis/residual/resolution.h"
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/limits/limits.h"
@@ -138,11 +140,16 @@ std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers, cons
     std::vector<CauseParameter> parameters;
     if (sampling.interval_s > 0) parameters.push_back({"interval_s", "s", sampling.interval_s, {}, false});
     if (sampling.frozen_s > 0) parameters.push_back({"frozen_s", "s", sampling.frozen_s, {}, false});
+    if (sampling.step_mm > 0)
+      parameters.push_back({"step_mm", std::string(model::name_of(unit)), sampling.step_mm, {}, false});
+    const std::size_t wrong = sampling.step_mm > 0 ? sampling.readings : sampling.hidden;
     const double error_mm =
-        sampling.excess_mm / std::sqrt(static_cast<double>(std::max<std::size_t>(1, sampling.hidden)));
+        sampling.excess_mm / std::sqrt(static_cast<double>(std::max<std::size_t>(1, wrong)));
+    const double other_noise_mm =
+        std::sqrt(std::max(0.0, square(noise_mm) - rounding_variance_mm2(sampling.step_mm)));
     named.push_back(cause_in_readings(causes::Sampling::id, std::move(parameters), sampling.excess_mm,
                                       {sampling.excess_mm - error_mm, sampling.excess_mm + error_mm},
-                                      noise_mm));
+                                      other_noise_mm));
   }
   return named;
 }

@@ -6,6 +6,7 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "model/catalogue.h"
+#include "sysid/diagnosis/residual/resolution.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/limits/limits.h"
@@ -33,7 +34,8 @@ std::string readings_sentence(const Diagnosis& d) {
   if (d.outliers.present)
     wrong = "The readings contain isolated wrong samples (" + significant(100 * d.outliers.share, 2) +
             " %, about " + reading(d, d.outliers.size_mm) + " off)";
-  if (d.sampling.present) {
+  const bool repeats = d.sampling.interval_s > 0 || d.sampling.frozen_s > 0;
+  if (repeats) {
     if (!wrong.empty())
       wrong += ", and some readings repeat";
     else
@@ -43,13 +45,18 @@ std::string readings_sentence(const Diagnosis& d) {
       forms.push_back("a new reading arrives every " + significant(d.sampling.interval_s, 2) + " s");
     if (d.sampling.frozen_s > 0)
       forms.push_back("the sensor is frozen for " + significant(d.sampling.frozen_s, 2) + " s");
-    if (!forms.empty()) wrong += " (" + enumerated(forms, ", and ") + ")";
+    wrong += " (" + enumerated(forms, ", and ") + ")";
   }
+  if (d.sampling.present && d.sampling.step_mm > 0)
+    wrong += (wrong.empty() ? "" : ". ") + std::string("The sensor has a coarse resolution of ") +
+             reading(d, d.sampling.step_mm) + ", which causes an error of " +
+             reading(d, std::sqrt(rounding_variance_mm2(d.sampling.step_mm)));
   if (d.lead)
     wrong += (wrong.empty() ? "" : ". ") + std::string("The readings are ") + significant(d.lead->lead_s, 3) +
              " s ahead of their command, because the clocks of readings and commands differ";
-  const std::string those =
-      d.outliers.present || d.sampling.present ? "without these readings " : "without this clock offset ";
+  const std::string those = d.outliers.present || repeats ? "without these readings "
+                            : d.lead                      ? "without this clock offset "
+                                                          : "";
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 

@@ -85,6 +85,18 @@ TEST(Change, RarelyUpdatedReadingIsNamedSampling) {
   EXPECT_TRUE(reduction.at("value").is_null()) << "the cause was found without a fit";
 }
 
+TEST(Change, ACoarserReadingIsNamedSampling) {
+  std::vector<Log> later = logs_of({}, 5);
+  for (Log& log : later) {
+    for (double& y : log.displacement_mm) y = 0.5 * std::round(y / 0.5);
+  }
+  const auto diagnosis = diagnose_change(logs_of({}, 1), later);
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  ASSERT_EQ(diagnosis->causes.size(), 1U) << change_sentence(*diagnosis);
+  EXPECT_EQ(diagnosis->causes[0].id, "sampling");
+  EXPECT_NEAR(diagnosis->causes[0].size.value, 0.5, 1e-9);
+}
+
 /// Adds errors in every period of 5 s. The error alternates during the first 3 s. During the last 2 s, there
 /// are single errors of twice the size. If the noise is underestimated, the single errors look like outliers.
 std::vector<Log> humming(std::vector<Log> logs) {

@@ -1,5 +1,6 @@
 #include "sysid/diagnosis/verdict/conclusion.h"
 
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ TEST(Conclusion, SimulatedDataRejectOnlyTheCausesOfTheSearch) {
   d.records = data.records;
   d.noise_mm = 0.04;
   d.as_given = d.recalibrated = fit_structure(data.records, {}, data.given);
-  Selection selection = selection_from(d.recalibrated, losses_of(d.recalibrated, division), d.noise_mm);
+  Selection selection = selection_from(d.recalibrated, losses_of(d.recalibrated, division), d.noise_mm, 0);
   FitPoint point = data.given;
   point.model = model::with_block(given, play);
   const Cause backlash = *find_cause("backlash");

@@ -196,6 +196,17 @@ TEST(VerdictSentence, StatesBothFormsOfRepeatedReadings) {
             "without these readings the recalibrated model's error is 0.4 mm.");
 }
 
+TEST(VerdictSentence, StatesACoarseResolution) {
+  Diagnosis d;
+  d.verdict = Verdict::cause_found;
+  d.extended_rmse_mm = 0.15;
+  d.sampling = {.present = true, .step_mm = 0.5};
+  EXPECT_EQ(
+      verdict_sentence(d),
+      "The sensor has a coarse resolution of 0.5 mm, which causes an error of 0.14 mm; the recalibrated "
+      "model's error is 0.15 mm.");
+}
+
 TEST(DataWarnings, ReportUndeterminedHysteresisWithoutUnloading) {
   Log ramp;
   ramp.name = "ramp";
