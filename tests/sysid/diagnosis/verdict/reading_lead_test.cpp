@@ -20,6 +20,9 @@ TEST(WithDriveAhead, ShiftsTheDriveEarlierAndKeepsTheFirstSample) {
   // The lead of 0.05 s is 2.5 samples long. Between two samples, the command is linear.
   const Record after = with_drive_ahead(before, 0.05).front();
   EXPECT_EQ(after.drive_kpa[0], before[0].drive_kpa[0]);
+  EXPECT_TRUE(std::isnan(after.reading_mm[0]));
+  EXPECT_NEAR(after.duration_s[1], before[0].duration_s[1] + 0.05, 1e-12);
+  EXPECT_EQ(after.duration_s[2], before[0].duration_s[2]);
   for (std::size_t i = 1; i + 3 < after.size(); ++i)
     ASSERT_NEAR(after.drive_kpa[i], 0.5 * (before[0].drive_kpa[i + 2] + before[0].drive_kpa[i + 3]), 1e-9)
         << i;
@@ -31,7 +34,7 @@ TEST(WithDriveAhead, HidesTheLastReadingsWithoutAShiftedDrive) {
   const std::size_t last = after.size() - 1;
   EXPECT_TRUE(std::isfinite(after.reading_mm[last - 5]));
   for (std::size_t i = last - 4; i <= last; ++i) EXPECT_TRUE(std::isnan(after.reading_mm[i])) << i;
-  EXPECT_EQ(after.readings, before[0].readings - 5);
+  EXPECT_EQ(after.readings, before[0].readings - 6) << "the reading of the first sample is hidden, too";
 }
 
 TEST(WithDriveAhead, HeldDriveIsShiftedWithoutInterpolation) {
