@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/slow_creep.h"
 #include "model/chain_walk.h"
 #include "model/named.h"
 #include "sysid/fitting/gradient.h"
@@ -146,7 +147,7 @@ class ChainResiduals final : public Residuals {
   /// Jacobian.
   void start(const FitPoint& point, std::span<const double> z, std::size_t k, std::span<double> r,
              std::span<double> jacobian) const {
-    const std::vector<double> time_constants = branch_time_constants_s(point.model);
+    const std::vector<CreepBranch> branches = creep_branches(point.model);
     const Record& record = records_[k];
     const StartState& state = point.starts[k];
     const std::vector<double> offset_line = offset_columns(z, k);
@@ -158,9 +159,10 @@ class ChainResiduals final : public Residuals {
       r[row] += state.offset_mm;
       double* const line = &jacobian[row * space_.size()];
       for (const std::size_t b : unsettled) {
-        const double decay = std::exp(-t / time_constants[b]);
+        const double time_constant_s = branches[b].time_constant_s;
+        const double decay = std::exp(-t / time_constant_s);
         r[row] += state.unsettled_mm[b] * decay;
-        creep_columns(point, z, b, state.unsettled_mm[b] * decay * t / time_constants[b], line);
+        creep_columns(point, z, b, state.unsettled_mm[b] * decay * t / time_constant_s, line);
         unsettled_column(z, k, b, decay, line);
       }
       for (const std::size_t c : offsets_) line[c] = offset_line[c];
@@ -202,19 +204,28 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// Adds the derivatives of unsettled creep with respect to k and c to a row. They are computed from the
-  /// derivative with respect to ln tau, where tau = c/k is the time constant of the branch.
+  /// Adds the derivatives of unsettled creep with respect to the parameters of its branch to a row. They are
+  /// computed from the derivative with respect to ln tau, where tau is the time constant of the branch. It is
+  /// c/k for a Kelvin-Voigt branch, and a parameter of the slow creep.
   void creep_columns(const FitPoint& point, std::span<const double> z, std::size_t branch, double by_ln_tau,
                      double* line) const {
     if (by_ln_tau == 0) return;
     const auto position = model::position_of<model::KelvinVoigt>(point.model);
+    const auto slow = model::position_of<model::SlowCreep>(point.model);
+    const std::size_t fast_branches = branch_time_constants_s(point.model).size();
+    constexpr std::size_t time_constant = model::parameter_index<model::SlowCreep>("time_constant_s");
     for (std::size_t c = 0; c < space_.size(); ++c) {
       const FreeParameter& p = space_.free()[c];
       if (p.kind != FreeParameter::Kind::model) continue;
       const model::ParameterPlace place = model::place_of(point.model, p.flat_index);
-      if (!position || place.block != *position || place.value == 0 || (place.value - 1) / 2 != branch)
+      double sign = 0;
+      if (branch < fast_branches && place.block == *position && place.value > 0 &&
+          (place.value - 1) / 2 == branch)
+        sign = (place.value - 1) % 2 == 0 ? -1 : 1;
+      else if (branch == fast_branches && place.block == *slow && place.value == time_constant)
+        sign = 1;
+      else
         continue;
-      const double sign = (place.value - 1) % 2 == 0 ? -1 : 1;
       line[c] += sign * by_ln_tau * p.slope(z[c]) / point.model.blocks[place.block].values[place.value];
     }
   }

@@ -19,6 +19,12 @@ bool is_logarithmic(const model::ParameterSpec& spec) {
   return spec.lower >= 0 && spec.neutral >= 1e6;
 }
 
+/// Returns the unsettled creep of a branch [mm]. It is 0 if the start state was estimated for a model without
+/// this branch.
+double unsettled_mm(const StartState& start, std::size_t branch) {
+  return branch < start.unsettled_mm.size() ? start.unsettled_mm[branch] : 0;
+}
+
 /// Largest dead time, lag or period that a fit permits, in units of time_unit_s().
 constexpr double largest_latency = 10;
 
@@ -94,7 +100,7 @@ FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records
     : base_(model), base_starts_(rest_starts(model, records)) {
   const FitUnits units{time_unit_s(records), pressure_unit_kpa(records), displacement_unit_mm(records)};
   for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index, units));
-  const std::size_t branches = branch_time_constants_s(model).size();
+  const std::size_t branches = creep_branches(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
     const auto add = [&](FreeParameter::Kind kind, std::size_t branch, const std::string& name,
@@ -183,7 +189,7 @@ double FitSpace::value(const FitPoint& point, std::size_t index) const {
     case FreeParameter::Kind::peak_before:
       return point.starts[p.record].peak_before_kpa;
     case FreeParameter::Kind::unsettled:
-      return point.starts[p.record].unsettled_mm[p.branch];
+      return unsettled_mm(point.starts[p.record], p.branch);
     case FreeParameter::Kind::model:
       break;
   }
@@ -193,7 +199,7 @@ double FitSpace::value(const FitPoint& point, std::size_t index) const {
 
 std::vector<StartState> rest_starts(const model::Model& model, const std::vector<Record>& records) {
   std::vector<StartState> starts(records.size());
-  const std::size_t branches = branch_time_constants_s(model).size();
+  const std::size_t branches = creep_branches(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const double first = records[r].drive_kpa.front();
     // If the peak is unknown, the search starts with a peak halfway between the first and the largest

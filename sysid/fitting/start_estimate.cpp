@@ -88,7 +88,7 @@ class StartSearch {
   StartSearch(const model::Model& model, const Record& unit)
       : model_(model),
         beginning_(beginning_of(unit)),
-        time_constants_s_(branch_time_constants_s(model)),
+        branches_(creep_branches(model)),
         first_kpa_(unit.drive_kpa.front()),
         under_pressure_(unit.start_unknown && unit.start == Start::automatic) {
     const auto [lowest, highest] = std::minmax_element(unit.drive_kpa.begin(), unit.drive_kpa.end());
@@ -113,7 +113,7 @@ class StartSearch {
   [[nodiscard]] StartState at_rest() const {
     StartState rest;
     rest.peak_before_kpa = first_kpa_;
-    rest.unsettled_mm.assign(time_constants_s_.size(), 0);
+    rest.unsettled_mm.assign(branches_.size(), 0);
     return rest;
   }
 
@@ -151,7 +151,7 @@ class StartSearch {
     Trial trial;
     trial.start = std::move(start);
     trial.start.offset_mm = numbers[0];
-    for (std::size_t b = 0; b < time_constants_s_.size(); ++b)
+    for (std::size_t b = 0; b < branches_.size(); ++b)
       trial.start.unsettled_mm[b] = numbers[static_cast<Eigen::Index>(b + 1)];
     trial.left = {std::max(left.squaredNorm() / static_cast<double>(y.size()), smallest_mm2),
                   independent_among(left)};
@@ -261,18 +261,17 @@ class StartSearch {
 
   void prepare_creep() {
     const auto rows = static_cast<Eigen::Index>(rows_.size());
-    const auto branches = static_cast<Eigen::Index>(time_constants_s_.size());
+    const auto branches = static_cast<Eigen::Index>(branches_.size());
     columns_ = Eigen::MatrixXd::Ones(rows, 1 + branches);
     precision_ = Eigen::VectorXd::Zero(1 + branches);
     if (branches == 0) return;
-    const std::vector<double>& creep = model_.blocks[*model::position_of<model::KelvinVoigt>(model_)].values;
     for (Eigen::Index b = 0; b < branches; ++b) {
       const auto branch = static_cast<std::size_t>(b);
       for (Eigen::Index r = 0; r < rows; ++r) {
         const double since_s = beginning_.time_s[rows_[static_cast<std::size_t>(r)]] - beginning_.time_s[0];
-        columns_(r, 1 + b) = std::exp(-since_s / time_constants_s_[branch]);
+        columns_(r, 1 + b) = std::exp(-since_s / branches_[branch].time_constant_s);
       }
-      const double settled_mm = (highest_kpa_ - lowest_kpa_) / creep[1 + 2 * branch];
+      const double settled_mm = (highest_kpa_ - lowest_kpa_) * branches_[branch].gain_mm_per_kpa;
       precision_[1 + b] = 1 / std::max(square(unsettled_share * settled_mm), smallest_mm2);
     }
   }
@@ -329,7 +328,7 @@ class StartSearch {
     const auto n = static_cast<double>(rows_.size());
     const double motion_mm2 = squares / n - square(sum / n);
     const double less_mm2 = resting.left.mean_square_mm2 - moving.left.mean_square_mm2;
-    const double numbers = reversals + static_cast<double>(time_constants_s_.size());
+    const double numbers = reversals + static_cast<double>(branches_.size());
     const double independent = moving.left.independent;
     const double free = std::max(independent - numbers, limits::majority_share * independent);
     const double most =
@@ -342,7 +341,7 @@ class StartSearch {
 
   const model::Model& model_;
   Record beginning_;
-  std::vector<double> time_constants_s_;
+  std::vector<CreepBranch> branches_;
   double first_kpa_, lowest_kpa_ = 0, highest_kpa_ = 0;
   bool under_pressure_;
   std::vector<std::size_t> rows_;  ///< indices of the samples that have a reading

@@ -5,6 +5,7 @@
 
 #include "base/thread_budget.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/slow_creep.h"
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory_walk.h"
@@ -14,12 +15,12 @@ namespace softgrip::sysid {
 void add_start(const model::Model& model, const Record& record, const StartState& start,
                std::vector<double>& series_mm) {
   for (double& y : series_mm) y += start.offset_mm;
-  const std::vector<double> time_constants = branch_time_constants_s(model);
-  for (std::size_t b = 0; b < std::min(time_constants.size(), start.unsettled_mm.size()); ++b) {
+  const std::vector<CreepBranch> branches = creep_branches(model);
+  for (std::size_t b = 0; b < std::min(branches.size(), start.unsettled_mm.size()); ++b) {
     if (start.unsettled_mm[b] == 0) continue;
     for (std::size_t i = 0; i < record.size(); ++i) {
-      series_mm[i] +=
-          start.unsettled_mm[b] * std::exp(-(record.time_s[i] - record.time_s[0]) / time_constants[b]);
+      series_mm[i] += start.unsettled_mm[b] *
+                      std::exp(-(record.time_s[i] - record.time_s[0]) / branches[b].time_constant_s);
     }
   }
 }
@@ -66,13 +67,35 @@ double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
   return std::isfinite(rmse) ? rmse : std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+std::vector<CreepBranch> kelvin_voigt_branches(const model::Model& model) {
+  std::vector<CreepBranch> branches;
+  const auto position = model::position_of<model::KelvinVoigt>(model);
+  if (!position) return branches;
+  const std::vector<double>& values = model.blocks[*position].values;
+  for (std::size_t i = 1; i + 1 < values.size(); i += 2)
+    branches.push_back({values[i + 1] / values[i], 1 / values[i]});
+  return branches;
+}
+
+}  // namespace
+
 std::vector<double> branch_time_constants_s(const model::Model& model) {
   std::vector<double> time_constants;
-  const auto position = model::position_of<model::KelvinVoigt>(model);
-  if (!position) return time_constants;
-  const std::vector<double>& values = model.blocks[*position].values;
-  for (std::size_t i = 1; i + 1 < values.size(); i += 2) time_constants.push_back(values[i + 1] / values[i]);
+  for (const CreepBranch& branch : kelvin_voigt_branches(model))
+    time_constants.push_back(branch.time_constant_s);
   return time_constants;
+}
+
+std::vector<CreepBranch> creep_branches(const model::Model& model) {
+  std::vector<CreepBranch> branches = kelvin_voigt_branches(model);
+  if (const auto slow = model::position_of<model::SlowCreep>(model)) {
+    const std::vector<double>& values = model.blocks[*slow].values;
+    branches.push_back({values[model::parameter_index<model::SlowCreep>("time_constant_s")],
+                        values[model::parameter_index<model::SlowCreep>("gain_mm_per_kpa")]});
+  }
+  return branches;
 }
 
 }  // namespace softgrip::sysid

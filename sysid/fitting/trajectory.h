@@ -35,4 +35,14 @@ void add_start(const model::Model& model, const Record& record, const StartState
 /// Returns the time constants c/k of the branches in the model's first Kelvin-Voigt block [s].
 [[nodiscard]] std::vector<double> branch_time_constants_s(const model::Model& model);
 
+/// A part of a model whose creep decays exponentially. At the start of a record, it may be unsettled.
+struct CreepBranch {
+  double time_constant_s = 0;
+  double gain_mm_per_kpa = 0;  ///< settled creep per pressure
+};
+
+/// Returns the branches in the model's first Kelvin-Voigt block, followed by its slow creep, if any. The
+/// order is that of StartState::unsettled_mm.
+[[nodiscard]] std::vector<CreepBranch> creep_branches(const model::Model& model);
+
 }  // namespace softgrip::sysid

@@ -10,6 +10,7 @@
 #include "base/statistics.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/search/scan.h"
+#include "sysid/diagnosis/search/scored.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
 
@@ -98,15 +99,21 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
   return fits;
 }
 
+/// Returns true if the last cause of the fit has a free form.
+bool is_free(const StructureFit& fit) {
+  return has_free_form(fit.point.model, fit.causes.back());
+}
+
 /// Returns true if `fit` is better than `best`. With equally many parameters, the fit with the smaller mean
 /// square is better. Otherwise, the fit with more parameters is better only if its mean square is smaller by
-/// at least the share limits::least_refinement_share.
+/// at least the share limits::least_refinement_share. A free form can follow any slow signal. It is better
+/// than a physical form of the same cause only if its mean square is smaller by limits::equal_error_share.
 bool is_better(const StructureFit& fit, const StructureFit& best) {
-  constexpr double ratio = 1 - limits::least_refinement_share;
-  double needed = 1;
-  if (fit.free_parameters > best.free_parameters) needed = ratio;
-  if (fit.free_parameters < best.free_parameters) needed = 1 / ratio;
-  return fit.mean_square_mm2 < needed * best.mean_square_mm2;
+  const bool free = is_free(fit), other_kind = free != is_free(best);
+  const double ratio = 1 - (other_kind ? limits::equal_error_share : limits::least_refinement_share);
+  const bool is_larger = other_kind ? free : fit.free_parameters > best.free_parameters;
+  const bool is_smaller = other_kind ? !free : fit.free_parameters < best.free_parameters;
+  return fit.mean_square_mm2 < (is_larger ? ratio : is_smaller ? 1 / ratio : 1) * best.mean_square_mm2;
 }
 
 StructureFit follow(const SearchData& data, const std::vector<StructureFit>& from) {

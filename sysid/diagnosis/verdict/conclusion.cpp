@@ -52,11 +52,14 @@ void Conclusion::adopt(BaseFindings& base, const Selection& selection) {
       std::min(100.0, 100 * square(d_.unexplained_error.excess_mm / selection.base_unexplained.excess_mm));
   count_shift(base.losses);
   d_.extended_model = named_model(d_.extended.point.model, "extended");
-  d_.causes = std::move(base.named);
+  // A structure that explains only a small part of the error is no evidence for its components.
+  const bool explains = d_.unexplained_percent < 100 * (1 - limits::least_explained_share);
+  std::vector<NamedCause>& components = explains ? d_.causes : d_.partial;
+  components = std::move(base.named);
   std::vector<NamedCause> in_readings = found_in_readings();
   d_.causes.insert(d_.causes.begin(), std::make_move_iterator(in_readings.begin()),
                    std::make_move_iterator(in_readings.end()));
-  d_.partial = std::move(base.possible);
+  std::ranges::move(base.possible, std::back_inserter(d_.partial));
   const bool whole = !sysid::leaves_too_much(d_.unexplained_error, selection.base_unexplained, d_.noise_mm);
   d_.verdict = d_.causes.empty()             ? Verdict::unexplained
                : !whole                      ? Verdict::partly_explained

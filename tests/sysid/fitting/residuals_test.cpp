@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "base/thread_budget.h"
+#include "model/blocks/slow_creep.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/each_record.h"
 #include "tests/sysid/simulated.h"
@@ -180,14 +182,14 @@ INSTANTIATE_TEST_SUITE_P(Worlds, BothWays, testing::ValuesIn(worlds()),
                          [](const auto& world) { return world.param.name; });
 
 /// Compares the derivatives with central differences of the prediction of the model.
-TEST(ChainResiduals, DerivativesMatchCentralDifferences) {
-  World world{"TwinUnknownStart", bench_twin(), true, false, true};
+void expect_central_differences(const World& world) {
   const std::vector<Record> records = records_of(world);
   const FitSpace space(world.model, records, all_but_the_exponent(world.model));
   const auto residuals = chain_residuals(records, space);
   FitPoint point{world.model, rest_starts(world.model, records)};
   for (auto& start : point.starts) start.peak_before_kpa = 55;
   for (double& u : point.starts[0].unsettled_mm) u = 0.4;
+  ASSERT_EQ(point.starts[0].unsettled_mm.size(), creep_branches(world.model).size());
   const std::vector<double> z = space.z(point);
   const std::size_t rows = residuals->count();
   Jacobian jacobian(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(z.size()));
@@ -209,7 +211,21 @@ TEST(ChainResiduals, DerivativesMatchCentralDifferences) {
       largest = std::max(largest, std::abs(by_difference));
     }
     EXPECT_LT(difference, 2e-3 * largest) << space.free()[c].name;
+    EXPECT_GT(largest, 0) << space.free()[c].name;
   }
+}
+
+TEST(ChainResiduals, DerivativesMatchCentralDifferences) {
+  expect_central_differences({"TwinUnknownStart", bench_twin(), true, false, true});
+}
+
+/// The slow creep is a further branch, whose unsettled creep decays with its own time constant.
+TEST(ChainResiduals, DerivativesOfUnsettledSlowCreepMatchCentralDifferences) {
+  const Model slow = model::with_block(bench_twin(), {model::block_type<model::SlowCreep>(), {0.1, 40}});
+  ASSERT_EQ(creep_branches(slow).size(), creep_branches(bench_twin()).size() + 1);
+  EXPECT_EQ(creep_branches(slow).back().time_constant_s, 40);
+  EXPECT_EQ(creep_branches(slow).back().gain_mm_per_kpa, 0.1);
+  expect_central_differences({"SlowCreepUnknownStart", slow, true, false, true});
 }
 
 /// The measured pressure begins slightly below zero. At this pressure, the rest position of a soft spring is

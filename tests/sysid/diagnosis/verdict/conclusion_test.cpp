@@ -77,6 +77,42 @@ TEST(Conclusion, SimulatedDataRejectOnlyTheCausesOfTheSearch) {
   for (const RunError& run : d.runs) EXPECT_EQ(run.extended, run.recalibrated);
 }
 
+/// Returns the diagnosis that adopts a structure whose unexplained error is `share` times that of the base.
+Diagnosis adopted(double share) {
+  const model::Model given = loaded("zhang2025");
+  const std::vector<Log> logs{simulated(given, model::SignalName::tp1, 25, 0.3, 1)};
+  const SearchData data = make_search_data(make_records(logs, {}), given);
+  const Division division = divide(data.records, 8);
+  Diagnosis d;
+  d.records = data.records;
+  d.noise_mm = 0.01;
+  d.as_given = fit_structure(data.records, {}, data.given);
+  const Selection selection = selection_from(d.as_given, losses_of(d.as_given, division), d.noise_mm, 0);
+  BaseFindings base;
+  base.fit = selection.base;
+  for (std::vector<double>& residual : base.fit.residual_mm) {
+    for (double& each : residual) each *= std::sqrt(share);
+  }
+  base.losses = selection.base_losses;
+  NamedCause backlash;
+  backlash.cause = *find_cause("backlash");
+  base.named = {backlash};
+  const DiagnosisOptions options;
+  Conclusion(logs, given, options, data, d).adopt(base, selection);
+  return d;
+}
+
+TEST(Conclusion, AStructureThatExplainsLittleNamesNoComponent) {
+  const Diagnosis little = adopted(0.9), much = adopted(0.5);
+  EXPECT_EQ(little.verdict, Verdict::unexplained);
+  EXPECT_TRUE(little.causes.empty());
+  ASSERT_EQ(little.partial.size(), 1U);
+  EXPECT_EQ(little.partial.front().cause.id, "backlash");
+  EXPECT_EQ(much.verdict, Verdict::partly_explained);
+  EXPECT_EQ(much.causes.size(), 1U);
+  EXPECT_TRUE(much.partial.empty());
+}
+
 BlockLosses losses(const Division& division, double first_mm2, double other_mm2) {
   BlockLosses each;
   for (const Block& block : division.blocks) each.push_back(block.fold == 0 ? first_mm2 : other_mm2);

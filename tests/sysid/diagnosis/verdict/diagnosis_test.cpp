@@ -16,6 +16,8 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/quantisation.h"
+#include "model/blocks/slow_creep.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
@@ -206,17 +208,50 @@ TEST(Diagnosis, ReadingSlowerThanTheLogIsNamedSampling) {
   EXPECT_NEAR(diagnosis->causes[0].parameters.at(0).value, 9 * 0.02, 1e-3);
 }
 
+/// Rounds the readings of two logs to multiples of 0.4 mm.
+std::vector<Log> coarse_logs(const model::Model& truth) {
+  std::vector<Log> logs = read_at(truth, [](std::size_t i) { return i; });
+  for (Log& log : logs) {
+    for (double& y : log.displacement_mm) y = 0.4 * std::round(y / 0.4);
+  }
+  return logs;
+}
+
+TEST(Diagnosis, CoarseResolutionIsNamedSampling) {
+  const model::Model truth = without_valve();
+  const auto diagnosis = diagnose(coarse_logs(truth), truth, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_EQ(diagnosis->verdict, Verdict::cause_found);
+  ASSERT_EQ(diagnosis->causes.size(), 1U);
+  EXPECT_EQ(diagnosis->causes[0].cause.id, "sampling");
+  EXPECT_EQ(diagnosis->causes[0].parameters.at(0).name, "step_mm");
+  EXPECT_NEAR(diagnosis->causes[0].parameters[0].value, 0.4, 1e-9);
+  EXPECT_NEAR(diagnosis->noise_mm, std::hypot(noise_mm, 0.4 / std::sqrt(12)), 0.01);
+}
+
+TEST(Diagnosis, AKnownResolutionIsNoErrorOfTheModel) {
+  const model::Model truth =
+      model::with_block(without_valve(), {model::block_type<model::Quantisation>(), {0.4}});
+  const auto diagnosis = diagnose(coarse_logs(truth), truth, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_TRUE(diagnosis->causes.empty());
+  EXPECT_TRUE(diagnosis->verdict == Verdict::adequate || diagnosis->verdict == Verdict::recalibrate)
+      << name_of(diagnosis->verdict);
+}
+
+// The block of this cause extrapolates the motion linearly. A lead of 0.2 s is too long for this block, so
+// only the shift of the drive explains the readings.
 TEST(Diagnosis, ReadingAheadOfTheCommandIsAClockOffset) {
   const model::Model truth = without_valve();
-  const auto diagnosis = diagnose(read_at(truth, [](std::size_t i) { return i + 7; }), truth, {});
+  const auto diagnosis = diagnose(read_at(truth, [](std::size_t i) { return i + 10; }), truth, {});
   ASSERT_TRUE(diagnosis) << diagnosis.error();
   EXPECT_EQ(diagnosis->verdict, Verdict::cause_found);
   ASSERT_EQ(diagnosis->causes.size(), 1U);
   const NamedCause& named = diagnosis->causes[0];
   EXPECT_EQ(named.cause.id, "clock_offset");
-  EXPECT_NEAR(named.parameters.at(0).value, 7 * 0.02, 0.004);
-  EXPECT_LE(named.parameters[0].ci95.lower, 7 * 0.02);
-  EXPECT_GE(named.parameters[0].ci95.upper, 7 * 0.02);
+  EXPECT_NEAR(named.parameters.at(0).value, 10 * 0.02, 0.004);
+  EXPECT_LE(named.parameters[0].ci95.lower, 10 * 0.02);
+  EXPECT_GE(named.parameters[0].ci95.upper, 10 * 0.02);
   EXPECT_GT(named.gain_percent.lower, 0);
   EXPECT_LT(diagnosis->extended_rmse_mm, 1.05 * noise_mm);
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
@@ -254,6 +289,46 @@ TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
   ASSERT_TRUE(diagnosis) << diagnosis.error();
   EXPECT_TRUE(diagnosis->causes.empty()) << diagnosis->causes.front().cause.id;
   EXPECT_FALSE(diagnosis->unexplained_recalibrated.present) << diagnosis->unexplained_recalibrated.excess_mm;
+}
+
+/// Returns one recording as several logs. Each log contains one signal, and the finger does not settle
+/// between the logs.
+std::vector<Log> parts_of_one_recording(const model::Model& truth,
+                                        const std::vector<model::SignalName>& signals, std::uint64_t seed) {
+  constexpr double rate_hz = 25;
+  constexpr std::size_t rest = 200;
+  Log all;
+  std::vector<std::size_t> ends;
+  for (const model::SignalName signal : signals) {
+    const std::vector<double> command_kpa = simulated(truth, signal, rate_hz, 0, 1).pressure_command_kpa;
+    all.pressure_command_kpa.insert(all.pressure_command_kpa.end(), command_kpa.begin(), command_kpa.end());
+    all.pressure_command_kpa.resize(all.pressure_command_kpa.size() + rest, 0);
+    ends.push_back(all.pressure_command_kpa.size());
+  }
+  for (std::size_t i = 0; i < ends.back(); ++i) all.time_s.push_back(static_cast<double>(i) / rate_hz);
+  all.displacement_mm.assign(all.size(), 0);
+  const Record record = make_records({all}, {.start = Start::rest}).front();
+  all.displacement_mm = predict(truth, record, rest_starts(truth, {record}).front());
+  for (std::size_t i = 0; i < all.size(); ++i) all.displacement_mm[i] += noise_mm * normal_at(seed, i);
+  std::vector<Log> parts;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    parts.push_back(slice(all, k == 0 ? 0 : ends[k - 1], ends[k]));
+    parts.back().name = "part " + std::to_string(k + 1);
+  }
+  return parts;
+}
+
+/// Slow creep continues in the next log. A drift of the sensor can imitate this creep only approximately.
+TEST(Diagnosis, SlowCreepThatContinuesFromLogToLogIsNoDriftOfTheSensor) {
+  const model::Model truth =
+      model::with_block(without_valve(), {model::block_type<model::SlowCreep>(), {0.12, 150}});
+  using enum model::SignalName;
+  const auto diagnosis = diagnose(parts_of_one_recording(truth, {hold, steps, hold}, 5), without_valve(), {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  ASSERT_EQ(diagnosis->causes.size(), 1U) << verdict_sentence(*diagnosis);
+  EXPECT_EQ(diagnosis->causes[0].cause.id, "slow_creep");
+  EXPECT_NEAR(diagnosis->causes[0].parameters.at(1).value, 150, 50);
+  EXPECT_LT(diagnosis->extended_rmse_mm, 1.05 * noise_mm);
 }
 
 Diagnosis errors_mm(double as_given, double recalibrated, double extended, double noise) {
