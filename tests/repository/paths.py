@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that every file, link and program that the documents name exists, and that no page contains a heading twice:
-paths.py [--build BUILD_DIR]
+"""Checks that every file, link and program that the documents name exists, that no page contains a heading twice, and
+that headings and table rows are complete: paths.py [--build BUILD_DIR]
 
 The check reads the pages of the top folder and docs/. A word of inline code or of a code block is a path of the
 project if its first part is a folder of the project. The programs in build/ are read from the ninja file in BUILD_DIR.
@@ -148,10 +148,21 @@ class Judge:
                 self.findings.append(f"{place}: the heading `{heading}` is already in line {seen[heading]}")
             seen.setdefault(heading, number)
 
+    def markup(self, document, text):
+        """Checks that a space follows the number signs of a heading and that a table row ends with a bar. A formatter
+        for another language breaks both."""
+        for number, line, inside in lines_of(text):
+            place = f"{document.relative_to(ROOT)}:{number}"
+            if not inside and re.match(r"#+[^#\s]", line):
+                self.findings.append(f"{place}: a heading needs a space after `#`")
+            if not inside and line.startswith("|") and not line.rstrip().endswith("|"):
+                self.findings.append(f"{place}: a table row must end with `|`")
+
     def document(self, document):
         text = document.read_text()
         made = made_by_the_reader(document, text)
         self.headings(document, text)
+        self.markup(document, text)
         for number, word in words_of(text):
             if not made(word):
                 self.word(f"{document.relative_to(ROOT)}:{number}", word)
