@@ -152,15 +152,14 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
         Interval{100 * outliers.share_low, 100 * outliers.share_high}, outliers.excess_mm);
   const SamplingEvidence& sampling = later.sampling;
   constexpr double slower = 1.5;
-  if (sampling.step_mm > slower * std::max(healthy.sampling.step_mm, healthy.noise_mm))
-    add(causes::Sampling::id, {"resolution of the reading", sampling.step_mm, "mm"}, {},
-        std::sqrt(rounding_variance_mm2(sampling.step_mm)));
-  if (!sampling.present) return;
-  if (sampling.frozen_s > slower * healthy.sampling.frozen_s)
+  if (sampling.present && sampling.frozen_s > slower * healthy.sampling.frozen_s)
     add(causes::Sampling::id, {"the reading is frozen for", sampling.frozen_s, "s"}, {}, sampling.excess_mm);
-  else if (sampling.interval_s > slower * healthy.sampling.interval_s)
+  else if (sampling.present && sampling.interval_s > slower * healthy.sampling.interval_s)
     add(causes::Sampling::id, {"time between two updates of the reading", sampling.interval_s, "s"}, {},
         sampling.excess_mm);
+  else if (sampling.step_mm > slower * std::max(healthy.sampling.step_mm, healthy.noise_mm))
+    add(causes::Sampling::id, {"resolution of the reading", sampling.step_mm, "mm"}, {},
+        std::sqrt(rounding_variance_mm2(sampling.step_mm)));
 }
 
 ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
